@@ -1,0 +1,119 @@
+// Butterfly prediction of edge midpoints with Zorin's stencils at extraordinary vertices
+// [Dyn, Levin, Gregory 1990], [Zorin, Schroeder, Sweldens 1996].
+//
+// Departures, so that the stencil exists for every edge of a mesh with border:
+//   border edge           the 4-point rule (-1/16, 9/16, 9/16, -1/16) along the border curve alone
+//   an end on the border  the regular 8-point rule, where a face that is missing is replaced by the reflection of its triangle
+#ifndef LACERTA_COMMON_BUTTERFLY_H_
+#define LACERTA_COMMON_BUTTERFLY_H_
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "common/subdivision.h"
+#include "lacerta/mesh.h"
+
+namespace lacerta {
+
+// Weights of the ring of an extraordinary vertex of valence K >= 3; entry j belongs to the j-th neighbor counted from the
+// other end of the edge. The vertex itself has weight 3/4.
+std::vector<float> ExtraordinaryStencil(int valence);
+
+// Extraordinary stencils of the valences of one mesh, made once.
+class StencilTable {
+ public:
+  explicit StencilTable(const Topology& topology);
+  const std::vector<float>& ForValence(int valence) const { return weights_[valence]; }
+
+ private:
+  std::vector<std::vector<float>> weights_;  // by valence; empty where no vertex has it
+};
+
+// Calls visit(vertex, weight) for each vertex of the stencil of `edge`; the weights sum to one and a vertex may be visited twice.
+template <typename Visitor>
+void VisitStencil(const Topology& t, const StencilTable& table, uint32_t edge, const Visitor& visit);
+
+// Predicted position of the midpoint of every edge: #E.
+std::vector<Vec3f> PredictMidpoints(const Topology& topology, const StencilTable& table, const std::vector<Vec3f>& positions);
+
+// --- implementation of the template ---
+
+namespace butterfly_internal {
+
+// The border edge at `vertex` other than `edge`, or kNone.
+uint32_t NextBorderEdge(const Topology& t, uint32_t edge, uint32_t vertex);
+
+template <typename Visitor>
+void VisitRegular(const Topology& t, uint32_t edge, float scale, const Visitor& visit) {
+  const auto& [a0, a1] = t.edges[edge];
+  visit(a0, 0.5f * scale);
+  visit(a1, 0.5f * scale);
+  for (const uint32_t face : t.edge_faces[edge]) {
+    const int corner = EdgeCorner(t, face, edge);
+    const uint32_t b = t.triangles[face][corner];
+    visit(b, 0.125f * scale);
+    for (const int step : {1, 2}) {
+      const uint32_t wing = t.face_edges[face][(corner + step) % 3];
+      const uint32_t neighbor = FaceAcross(t, face, wing);
+      if (neighbor != kNone) {
+        visit(OppositeVertex(t, neighbor, wing), -0.0625f * scale);
+      } else {  // reflect the third vertex of `face` across the missing edge
+        const uint32_t far = t.triangles[face][(corner + step) % 3];
+        const uint32_t near = far == a0 ? a1 : a0;
+        visit(near, -0.0625f * scale);
+        visit(b, -0.0625f * scale);
+        visit(far, 0.0625f * scale);
+      }
+    }
+  }
+}
+
+template <typename Visitor>
+void VisitExtraordinary(const Topology& t, const StencilTable& table, uint32_t edge, uint32_t vertex, float scale, const Visitor& visit) {
+  const std::vector<float>& weights = table.ForValence(t.valence[vertex]);
+  visit(vertex, 0.75f * scale);
+  uint32_t spoke = edge;
+  uint32_t face = t.edge_faces[edge][0];
+  for (const float weight : weights) {
+    const auto& ends = t.edges[spoke];
+    visit(ends[0] == vertex ? ends[1] : ends[0], weight * scale);
+    // The next spoke: the other edge of `face` at `vertex`.
+    const auto& tri = t.triangles[face];
+    const int corner = tri[0] == vertex ? 0 : tri[1] == vertex ? 1 : 2;
+    const uint32_t e1 = t.face_edges[face][(corner + 1) % 3], e2 = t.face_edges[face][(corner + 2) % 3];
+    spoke = e1 == spoke ? e2 : e1;
+    face = FaceAcross(t, face, spoke);
+  }
+}
+
+template <typename Visitor>
+void VisitBorder(const Topology& t, uint32_t edge, const Visitor& visit) {
+  for (int end = 0; end < 2; ++end) {
+    const uint32_t v = t.edges[edge][end];
+    const uint32_t next = NextBorderEdge(t, edge, v);
+    const auto& ends = t.edges[next];
+    visit(v, 0.5625f);
+    visit(ends[0] == v ? ends[1] : ends[0], -0.0625f);
+  }
+}
+
+}  // namespace butterfly_internal
+
+template <typename Visitor>
+void VisitStencil(const Topology& t, const StencilTable& table, uint32_t edge, const Visitor& visit) {
+  using namespace butterfly_internal;
+  if (t.edge_faces[edge][1] == kNone) return VisitBorder(t, edge, visit);
+  const auto& [a, b] = t.edges[edge];
+  if (t.on_border[a] || t.on_border[b]) return VisitRegular(t, edge, 1.0f, visit);
+  const bool a_extraordinary = t.valence[a] != 6, b_extraordinary = t.valence[b] != 6;
+  if (!a_extraordinary && !b_extraordinary) return VisitRegular(t, edge, 1.0f, visit);
+  const float scale = a_extraordinary && b_extraordinary ? 0.5f : 1.0f;
+  if (a_extraordinary) VisitExtraordinary(t, table, edge, a, scale, visit);
+  if (b_extraordinary) VisitExtraordinary(t, table, edge, b, scale, visit);
+}
+
+}  // namespace lacerta
+
+#endif  // LACERTA_COMMON_BUTTERFLY_H_

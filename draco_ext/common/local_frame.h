@@ -1,0 +1,31 @@
+// Local frames in which detail coefficients are expressed: [Guskov et al. 2000], [Khodakovsky, Guskov 2002].
+#ifndef LACERTA_COMMON_LOCAL_FRAME_H_
+#define LACERTA_COMMON_LOCAL_FRAME_H_
+
+#include <vector>
+
+#include "common/subdivision.h"
+#include "lacerta/mesh.h"
+
+namespace lacerta {
+
+// An orthonormal frame. A detail vector d has the coordinates (d.t1, d.t2, d.n).
+struct LocalFrame {
+  Vec3f tangent1, tangent2, normal;
+
+  Vec3f ToLocal(const Vec3f& d) const { return {Dot(d, tangent1), Dot(d, tangent2), Dot(d, normal)}; }
+  Vec3f ToWorld(const Vec3f& d) const { return tangent1 * d.x + tangent2 * d.y + normal * d.z; }
+};
+
+// Frame of the midpoint of every edge of `coarse`: #E.
+//   normal    of the predicted fine mesh at the midpoint: the normalized sum of the area vectors of its fine triangles
+//   tangent1  direction of the edge (second end minus first), made orthogonal to the normal
+//   tangent2  normal x tangent1
+// positions: #V of the coarse level; predicted_midpoints: #E from PredictMidpoints. Where the surface degenerates to a
+// line or point the axes x, y, z stand in, so that a frame is always orthonormal.
+std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,
+                                           const std::vector<Vec3f>& predicted_midpoints);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_COMMON_LOCAL_FRAME_H_

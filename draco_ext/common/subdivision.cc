@@ -1,0 +1,166 @@
+#include "common/subdivision.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace lacerta {
+namespace {
+
+// For every corner 3f + k the first corner that lies opposite the same vertex pair. Sorting bounds the work on any input,
+// a fan of a million faces around one vertex included.
+std::vector<uint32_t> FirstCornerOfEdge(const std::vector<Triangle>& triangles) {
+  std::vector<std::pair<uint64_t, uint32_t>> keyed;
+  keyed.reserve(triangles.size() * 3);
+  for (const Triangle& tri : triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const uint64_t a = tri[(k + 1) % 3], b = tri[(k + 2) % 3];
+      keyed.emplace_back(std::min(a, b) << 32 | std::max(a, b), static_cast<uint32_t>(keyed.size()));
+    }
+  }
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<uint32_t> first(keyed.size());
+  for (size_t i = 0; i < keyed.size(); ++i) {
+    first[keyed[i].second] = i > 0 && keyed[i - 1].first == keyed[i].first ? first[keyed[i - 1].second] : keyed[i].second;
+  }
+  return first;
+}
+
+Status NotTwoManifold(const char* what, uint32_t a, uint32_t b) {
+  return InvalidData(std::string(what) + " at edge (" + std::to_string(a) + ", " + std::to_string(b) + ")");
+}
+
+// Every vertex must have exactly one fan: the number of its faces, walked from any of them, is all of them.
+Status CheckVertexFans(const Topology& t) {
+  std::vector<uint32_t> num_faces(t.num_vertices, 0), one_face(t.num_vertices, kNone);
+  for (uint32_t f = 0; f < t.num_faces(); ++f) {
+    for (const uint32_t v : t.triangles[f]) {
+      ++num_faces[v];
+      one_face[v] = f;
+    }
+  }
+  for (uint32_t v = 0; v < t.num_vertices; ++v) {
+    if (one_face[v] == kNone) return InvalidData("vertex " + std::to_string(v) + " has no face");
+    uint32_t count = 0;
+    bool closed = false;
+    for (const int direction : {1, 2}) {  // both ways round from the first face, unless the first way closes the ring
+      uint32_t face = one_face[v];
+      while (!closed) {
+        count += direction == 1 || face != one_face[v];
+        const int corner = t.triangles[face][0] == v ? 0 : t.triangles[face][1] == v ? 1 : 2;
+        const uint32_t next = FaceAcross(t, face, t.face_edges[face][(corner + direction) % 3]);
+        if (next == kNone) break;
+        if (next == one_face[v]) closed = true;
+        face = next;
+      }
+    }
+    if (count != num_faces[v]) return InvalidData("vertex " + std::to_string(v) + " joins several fans of faces");
+  }
+  return Status();
+}
+
+}  // namespace
+
+StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triangle>& triangles) {
+  Topology t;
+  t.num_vertices = num_vertices;
+  t.triangles = triangles;
+  t.face_edges.resize(triangles.size());
+  for (uint32_t f = 0; f < t.num_faces(); ++f) {
+    const Triangle& tri = triangles[f];
+    for (const uint32_t v : tri) {
+      if (v < num_vertices) continue;
+      return InvalidData("triangle " + std::to_string(f) + " refers to vertex " + std::to_string(v) + " of " + std::to_string(num_vertices));
+    }
+    if (tri[0] == tri[1] || tri[1] == tri[2] || tri[2] == tri[0]) {
+      return InvalidData("triangle " + std::to_string(f) + " is degenerate");
+    }
+  }
+  t.edges.reserve(triangles.size() * 3 / 2 + 3);
+  t.edge_faces.reserve(triangles.size() * 3 / 2 + 3);
+  const std::vector<uint32_t> first_corner = FirstCornerOfEdge(triangles);
+  for (uint32_t corner = 0; corner < first_corner.size(); ++corner) {
+    const uint32_t f = corner / 3, k = corner % 3, first = first_corner[corner];
+    const uint32_t a = triangles[f][(k + 1) % 3], b = triangles[f][(k + 2) % 3];
+    if (first == corner) {
+      t.face_edges[f][k] = t.num_edges();
+      t.edges.push_back({a, b});
+      t.edge_faces.push_back({f, kNone});
+      continue;
+    }
+    const uint32_t e = t.face_edges[first / 3][first % 3];
+    if (t.edge_faces[e][1] != kNone) return NotTwoManifold("more than two faces meet", a, b);
+    if (t.edges[e][0] == a) return NotTwoManifold("two faces of opposite orientation meet", a, b);
+    t.edge_faces[e][1] = f;
+    t.face_edges[f][k] = e;
+  }
+  t.valence.assign(num_vertices, 0);
+  t.on_border.assign(num_vertices, 0);
+  for (uint32_t e = 0; e < t.num_edges(); ++e) {
+    for (const uint32_t v : t.edges[e]) {
+      if (t.valence[v] == 0xffff) return InvalidData("vertex " + std::to_string(v) + " has more than 65,535 edges");
+      ++t.valence[v];
+      if (t.edge_faces[e][1] == kNone) t.on_border[v] = 1;
+    }
+  }
+  LACERTA_RETURN_IF_ERROR(CheckVertexFans(t));
+  return t;
+}
+
+Topology Refine(const Topology& c) {
+  const uint32_t V = c.num_vertices, E = c.num_edges(), F = c.num_faces();
+  Topology t;
+  t.num_vertices = V + E;
+  t.triangles.resize(size_t{4} * F);
+  t.face_edges.resize(size_t{4} * F);
+  t.edges.resize(size_t{2} * E + size_t{3} * F);
+  t.edge_faces.resize(t.edges.size());
+  t.valence = c.valence;
+  t.valence.resize(t.num_vertices);
+  t.on_border = c.on_border;
+  t.on_border.resize(t.num_vertices);
+  for (uint32_t e = 0; e < E; ++e) {
+    const bool border = c.edge_faces[e][1] == kNone;
+    t.valence[V + e] = border ? 4 : 6;
+    t.on_border[V + e] = border;
+    for (uint32_t end = 0; end < 2; ++end) {
+      t.edges[2 * e + end] = {c.edges[e][end], V + e};
+      for (int side = 0; side < 2; ++side) {
+        const uint32_t f = c.edge_faces[e][side];
+        if (f == kNone) {
+          t.edge_faces[2 * e + end][side] = kNone;
+          continue;
+        }
+        const uint32_t v = c.edges[e][end];
+        const uint32_t corner = c.triangles[f][0] == v ? 0 : c.triangles[f][1] == v ? 1 : 2;
+        t.edge_faces[2 * e + end][side] = 4 * f + corner;
+      }
+    }
+  }
+  for (uint32_t f = 0; f < F; ++f) {
+    const Triangle& tri = c.triangles[f];
+    const auto& fe = c.face_edges[f];
+    const auto half = [&](uint32_t e, uint32_t v) { return 2 * e + (c.edges[e][0] == v ? 0u : 1u); };
+    const Triangle mid = {V + fe[0], V + fe[1], V + fe[2]};
+    for (uint32_t k = 0; k < 3; ++k) {
+      const uint32_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+      const uint32_t inner = 2 * E + 3 * f + k;
+      t.triangles[4 * f + k] = {tri[k], mid[k2], mid[k1]};
+      t.face_edges[4 * f + k] = {inner, half(fe[k1], tri[k]), half(fe[k2], tri[k])};
+      t.edges[inner] = {mid[k2], mid[k1]};
+      t.edge_faces[inner] = {4 * f + k, 4 * f + 3};
+      t.triangles[4 * f + 3][k] = mid[k];
+      t.face_edges[4 * f + 3][k] = inner;
+    }
+  }
+  return t;
+}
+
+LevelCounts SubdividedCounts(LevelCounts counts, int levels) {
+  for (int level = 0; level < levels; ++level) {
+    counts = {counts.vertices + counts.edges, 2 * counts.edges + 3 * counts.faces, 4 * counts.faces};
+  }
+  return counts;
+}
+
+}  // namespace lacerta

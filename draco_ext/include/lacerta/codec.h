@@ -1,0 +1,111 @@
+// The codec in two calls: a mesh goes in and a progressive stream comes out, and back. No Draco type in sight; the pair in
+// Draco's own manner is in lacerta/draco.h.
+#ifndef LACERTA_CODEC_H_
+#define LACERTA_CODEC_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lacerta/decoder.h"
+#include "lacerta/mesh.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+// What a stream is asked to be. Rate counts every byte of the stream; distortion is the two-sided surface distance d_S to
+// the input (lacerta/surface_distance.h).
+struct EncodeTarget {
+  enum class Kind {
+    kBytes,          // at most this many bytes, and within 2 % of them
+    kBitsPerVertex,  // the same in bits per vertex of the cleaned input (b/iv)
+    kPsnr,           // at least this many dB: 20 log10(bounding-box diagonal / d_S), and less than 0.3 dB over it
+    kError,          // d_S at most this share of the bounding-box diagonal
+  };
+  Kind kind = Kind::kPsnr;
+  double value = 70.0;
+};
+
+// Where the stream can be opened.
+enum class StreamForm {
+  kDraco,   // begins with a complete stock Draco stream of the base mesh: every Draco decoder shows the base
+  kCustom,  // one Draco header with our own method byte: only Lacerta opens it
+};
+
+// How the coefficients are chosen and quantized (docs/decisions).
+enum class EncodeMode {
+  kDefault,  // the best known
+  kPaper,    // [Payan & Antonini 2004] as written: open loop, model-based allocation
+};
+
+struct EncodeOptions {
+  EncodeTarget target;
+  StreamForm form = StreamForm::kDraco;
+  EncodeMode mode = EncodeMode::kDefault;
+  // Called now and then with the finished share (0..1) and what is being done; may be empty.
+  std::function<void(double share, const char* stage)> progress;
+};
+
+// What cleaning did to the input before it was coded. Counts of what was removed or merged.
+struct CleanReport {
+  uint64_t welded_vertices = 0;      // merged with another vertex at exactly the same position
+  uint64_t degenerate_triangles = 0; // with a repeated vertex
+  uint64_t duplicate_triangles = 0;  // with the same three vertices as an earlier one
+  uint64_t isolated_vertices = 0;    // of no triangle
+};
+
+// One decodable state of the stream.
+struct LevelReport {
+  uint64_t vertices = 0;
+  uint64_t triangles = 0;
+  uint64_t bytes = 0;   // length of the prefix of the stream that holds it
+  double error = 0.0;   // measured d_S to the cleaned input, in model units
+  double psnr = 0.0;    // dB
+};
+
+struct EncodeReport {
+  CleanReport clean;
+  uint64_t input_vertices = 0;    // after cleaning
+  uint64_t input_triangles = 0;
+  double diagonal = 0.0;          // of the input's bounding box, model units
+  bool progressive = false;       // false: a zero-level stream, stock Draco alone
+  std::string reason;             // why it is not progressive, or why the target could not be met; else empty
+  double normal_share = 0.0;      // share of detail coefficients whose remeshed position lies on the normal line
+  double remesh_psnr = 0.0;       // of the unquantized remesh
+  std::vector<LevelReport> levels;  // base first
+};
+
+struct EncodedMesh {
+  Bytes stream;
+  // Lengths of the parts of `stream`, in order: the base section, then one part per refinement level (the refinement header
+  // belongs to the first of them). They add up to stream.size().
+  std::vector<size_t> part_sizes;
+  EncodeReport report;
+};
+
+// Encodes a triangle mesh. Fails with kInvalidData on positions that are not finite, indices out of range, or no triangle
+// left after cleaning; with kInvalidArgument on a target that makes no sense.
+StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& mesh, const EncodeOptions& options);
+
+struct DecodedMesh {
+  TriangleMesh mesh;
+  int level = 0;          // of `mesh`
+  int num_levels = 0;     // refinement levels that the stream announces
+  // Ok, or why the refinement stopped before num_levels (a damaged or truncated segment): `mesh` is what came before it.
+  Status refinement;
+};
+
+struct DecodeOptions {
+  std::optional<int> max_level;  // stop there; empty: as far as the bytes go
+  DecodeLimits limits;
+};
+
+// Decodes either form, a stock Draco mesh stream, and any prefix of them that holds the base section.
+StatusOr<DecodedMesh> DecodeMesh(Span<const uint8_t> stream, const DecodeOptions& options);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_CODEC_H_

@@ -1,0 +1,89 @@
+// Status and StatusOr: every fallible function of Lacerta returns one of them, and none throws.
+#ifndef LACERTA_STATUS_H_
+#define LACERTA_STATUS_H_
+
+#include <cassert>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace lacerta {
+
+enum class StatusCode {
+  kOk = 0,
+  kInvalidArgument,   // an option or a value that the caller passed
+  kInvalidData,       // a file or stream that breaks its format
+  kUnsupported,       // legal, but not handled by this version
+  kLimitExceeded,     // would exceed a decode or memory budget
+  kNotFound,          // a file or object that is not there
+  kIoError,           // reading or writing failed
+  kInternal,          // a bug of ours
+};
+
+// Result of an operation: a code and, when not ok, a message that names what was wrong and what to do about it.
+class [[nodiscard]] Status {
+ public:
+  Status() = default;
+  Status(StatusCode code, std::string message) : code_(code), message_(std::move(message)) {}
+
+  bool ok() const { return code_ == StatusCode::kOk; }
+  StatusCode code() const { return code_; }
+  const std::string& message() const { return message_; }
+
+  // The same status with "context: " put before the message; an ok status stays ok.
+  Status WithContext(const std::string& context) const {
+    return ok() ? *this : Status(code_, context + ": " + message_);
+  }
+
+ private:
+  StatusCode code_ = StatusCode::kOk;
+  std::string message_;
+};
+
+inline Status InvalidArgument(std::string message) { return {StatusCode::kInvalidArgument, std::move(message)}; }
+inline Status InvalidData(std::string message) { return {StatusCode::kInvalidData, std::move(message)}; }
+inline Status Unsupported(std::string message) { return {StatusCode::kUnsupported, std::move(message)}; }
+inline Status LimitExceeded(std::string message) { return {StatusCode::kLimitExceeded, std::move(message)}; }
+inline Status NotFound(std::string message) { return {StatusCode::kNotFound, std::move(message)}; }
+inline Status IoError(std::string message) { return {StatusCode::kIoError, std::move(message)}; }
+inline Status InternalError(std::string message) { return {StatusCode::kInternal, std::move(message)}; }
+
+// A value, or the status that says why there is none. The value may be taken only after ok() was seen.
+template <typename T>
+class [[nodiscard]] StatusOr {
+ public:
+  StatusOr(T value) : content_(std::move(value)) {}                // NOLINT: implicit on purpose
+  StatusOr(Status status) : content_(std::move(status)) {          // NOLINT
+    assert(!std::get<Status>(content_).ok());
+  }
+
+  bool ok() const { return std::holds_alternative<T>(content_); }
+  Status status() const { return ok() ? Status() : std::get<Status>(content_); }
+  const T& value() const& { return *std::get_if<T>(&content_); }
+  T& value() & { return *std::get_if<T>(&content_); }
+  T&& value() && { return std::move(*std::get_if<T>(&content_)); }
+
+ private:
+  std::variant<Status, T> content_;
+};
+
+#define LACERTA_CONCAT_INNER(a, b) a##b
+#define LACERTA_CONCAT(a, b) LACERTA_CONCAT_INNER(a, b)
+
+// Returns from the calling function when `expression`, a Status, is not ok.
+#define LACERTA_RETURN_IF_ERROR(expression)                       \
+  do {                                                            \
+    if (::lacerta::Status lacerta_status = (expression); !lacerta_status.ok()) return lacerta_status; \
+  } while (false)
+
+// Assigns the value of `expression`, a StatusOr, to `target` or returns its status from the calling function.
+#define LACERTA_ASSIGN_OR_RETURN(target, expression) \
+  LACERTA_ASSIGN_OR_RETURN_INNER(LACERTA_CONCAT(lacerta_result_, __LINE__), target, expression)
+#define LACERTA_ASSIGN_OR_RETURN_INNER(result, target, expression) \
+  auto result = (expression);                                      \
+  if (!result.ok()) return result.status();                        \
+  target = std::move(result).value()
+
+}  // namespace lacerta
+
+#endif  // LACERTA_STATUS_H_
