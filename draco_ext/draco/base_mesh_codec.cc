@@ -113,9 +113,11 @@ float RangeForStep(float step, int bits) {
   return range;
 }
 
-// The input vertex behind each vertex of the decoded stream. Draco does not tell, so the same mesh is coded once more with
-// the vertex number as a second attribute: that does not change the order of the vertices, and CheckMap makes sure of it.
-StatusOr<std::vector<uint32_t>> FindVertexMap(const IntegerMesh& base, const Attempt& attempt) {
+// The input vertex behind each vertex of `coded`, the decoded triangles of the stream. Draco does not tell, so the same mesh
+// is coded once more with the vertex number as a second attribute: that may change the order of the vertices but not the
+// one of triangles and corners. (IsRenumbering makes sure of it.)
+StatusOr<std::vector<uint32_t>> FindVertexMap(const IntegerMesh& base, const Attempt& attempt,
+                                              const std::vector<Triangle>& coded) {
   const auto mesh = ToDracoMesh(StartingAt(base.mesh, attempt.first, attempt.corner));
   const auto num_vertices = static_cast<uint32_t>(base.mesh.positions.size());
   draco::GeometryAttribute description;
@@ -123,11 +125,17 @@ StatusOr<std::vector<uint32_t>> FindVertexMap(const IntegerMesh& base, const Att
   const int id = mesh->AddAttribute(description, /*identity_mapping=*/true, num_vertices);
   for (uint32_t v = 0; v < num_vertices; ++v) mesh->attribute(id)->SetAttributeValue(draco::AttributeValueIndex(v), &v);
   LACERTA_ASSIGN_OR_RETURN(const Bytes stream, EncodeIntegerPositions(*mesh, base.bits, attempt.settings));
-  LACERTA_ASSIGN_OR_RETURN(const StockMesh decoded, DecodeStockStream(stream, DecodeLimits()));
-  const draco::PointAttribute* const numbers = decoded.mesh->GetNamedAttribute(draco::GeometryAttribute::GENERIC);
-  std::vector<uint32_t> map(decoded.mesh->num_points());
-  for (uint32_t v = 0; v < map.size(); ++v) {
-    numbers->ConvertValue<uint32_t, 1>(numbers->mapped_index(draco::PointIndex(v)), &map[v]);
+  LACERTA_ASSIGN_OR_RETURN(const StockMesh numbered, DecodeStockStream(stream, DecodeLimits()));
+  const draco::PointAttribute* const numbers = numbered.mesh->GetNamedAttribute(draco::GeometryAttribute::GENERIC);
+  if (numbers == nullptr || numbered.mesh->num_faces() != coded.size()) {
+    return InternalError("Draco lost the vertex numbers of the base mesh");
+  }
+  std::vector<uint32_t> map(num_vertices, num_vertices);
+  for (uint32_t f = 0; f < coded.size(); ++f) {
+    const draco::Mesh::Face& face = numbered.mesh->face(draco::FaceIndex(f));
+    for (size_t k = 0; k < 3; ++k) {
+      numbers->ConvertValue<uint32_t, 1>(numbers->mapped_index(face[k]), &map[coded[f][k]]);
+    }
   }
   return map;
 }
@@ -181,7 +189,7 @@ StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
                        ": the base must be edge-manifold and oriented, one fan of triangles around each vertex");
   }
   LACERTA_ASSIGN_OR_RETURN(result.mesh, ToLattice(decoded.mesh, base.step));
-  LACERTA_ASSIGN_OR_RETURN(result.vertex_map, FindVertexMap(integers, attempt));
+  LACERTA_ASSIGN_OR_RETURN(result.vertex_map, FindVertexMap(integers, attempt, result.mesh.triangles));
   if (!IsRenumbering(base, result.mesh, result.vertex_map)) {
     return InvalidData("Draco changed the base mesh: it must be edge-manifold and oriented, one fan around each vertex");
   }
