@@ -235,13 +235,13 @@ uint32_t TriangleTree::BuildNode(Reference* first, Reference* last, const Refere
   const uint32_t index = static_cast<uint32_t>(nodes_.size());
   nodes_.emplace_back();
   for (int k = 0; k < kWidth; ++k) {
-    Box box;
+    Vec3f center, half_size{-FLT_MAX, -FLT_MAX, -FLT_MAX};
     uint32_t child = 0, count = 0;
     if (k < num_parts) {
+      Box box;
       for (const Reference* r = ends[k]; r != ends[k + 1]; ++r) box.Add(r->box);
-      const Vec3f padding{padding_, padding_, padding_};
-      box.min -= padding;
-      box.max += padding;
+      center = (box.min + box.max) * 0.5f;
+      half_size = (box.max - box.min) * 0.5f + Vec3f{padding_, padding_, padding_};
       if (ends[k + 1] - ends[k] <= kLeafSize) {
         child = static_cast<uint32_t>(ends[k] - all);
         count = static_cast<uint32_t>(ends[k + 1] - ends[k]);
@@ -249,11 +249,10 @@ uint32_t TriangleTree::BuildNode(Reference* first, Reference* last, const Refere
         child = BuildNode(ends[k], ends[k + 1], all, depth + 1);
       }
     }
-    // A missing child keeps the empty box, which is infinitely far and which no line meets.
     Node& node = nodes_[index];
     for (int axis = 0; axis < 3; ++axis) {
-      node.min[axis][k] = box.min[axis];
-      node.max[axis][k] = box.max[axis];
+      node.center[axis][k] = center[axis];
+      node.half_size[axis][k] = half_size[axis];
     }
     node.child[k] = child;
     node.count[k] = count;
@@ -286,10 +285,12 @@ void TriangleTree::Traverse(Search* search) const {
     const Node& node = nodes_[current];
     float d2[kWidth];
     for (int k = 0; k < kWidth; ++k) {
-      const float x = std::max(std::max(node.min[0][k] - px, px - node.max[0][k]), 0.0f);
-      const float y = std::max(std::max(node.min[1][k] - py, py - node.max[1][k]), 0.0f);
-      const float z = std::max(std::max(node.min[2][k] - pz, pz - node.max[2][k]), 0.0f);
-      d2[k] = x * x + y * y + z * z;
+      const float x = std::fabs(node.center[0][k] - px) - node.half_size[0][k];
+      const float y = std::fabs(node.center[1][k] - py) - node.half_size[1][k];
+      const float z = std::fabs(node.center[2][k] - pz) - node.half_size[2][k];
+      // v + |v| is twice max(v, 0), without a branch.
+      const float x2 = x + std::fabs(x), y2 = y + std::fabs(y), z2 = z + std::fabs(z);
+      d2[k] = 0.25f * (x2 * x2 + y2 * y2 + z2 * z2);
     }
     // The children in reach go on the stack, the nearest on top.
     const int bottom = size;
@@ -390,13 +391,13 @@ void TriangleTree::IntersectLine(const Vec3f& origin, const Vec3f& direction, fl
   while (size > 0) {
     const Node& node = nodes_[stack[--size]];
     for (int k = 0; k < kWidth; ++k) {
-      if (node.min[0][k] > node.max[0][k]) continue;  // a missing child
+      if (node.half_size[0][k] < 0.0f) continue;
       double enter = t_min, leave = t_max;
       for (int axis = 0; axis < 3; ++axis) {
-        const double t0 = (node.min[axis][k] - origin_d[axis]) * inverse[axis];
-        const double t1 = (node.max[axis][k] - origin_d[axis]) * inverse[axis];
-        enter = std::max(enter, std::min(t0, t1));
-        leave = std::min(leave, std::max(t0, t1));
+        const double middle = (static_cast<double>(node.center[axis][k]) - origin_d[axis]) * inverse[axis];
+        const double half = static_cast<double>(node.half_size[axis][k]) * std::fabs(inverse[axis]);
+        enter = std::max(enter, middle - half);
+        leave = std::min(leave, middle + half);
       }
       // Slack for the rounding of the quotients.
       if (enter - leave > 1e-14 * (std::fabs(enter) + std::fabs(leave))) continue;

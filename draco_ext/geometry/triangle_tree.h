@@ -66,10 +66,10 @@ class TriangleTree {
  private:
   static constexpr int kWidth = 4;  // children of a node
 
-  // Boxes of the children as structure of arrays, so that the compiler tests four at once.
+  // Boxes of the children as structure of arrays and by center and half size, so that the compiler tests four at once.
   struct alignas(64) Node {
-    float min[3][kWidth];
-    float max[3][kWidth];
+    float center[3][kWidth];
+    float half_size[3][kWidth];  // negative in a missing child
     uint32_t child[kWidth];  // a node, or the first slot of a leaf
     uint32_t count[kWidth];  // 0: a node, else the number of triangles in the leaf
   };
