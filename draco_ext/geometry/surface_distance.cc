@@ -209,7 +209,7 @@ StatusOr<SurfaceDistance> SurfaceDistanceMeter::Measure(const TriangleMesh& mesh
         return sampler.Sample(i);
       };
     });
-    const BlockSum vertices = SumOverBlocks(from.vertices.size(), to.tree,
+    const BlockSum vertices = SumOverBlocks(options.max_at_vertices ? from.vertices.size() : 0, to.tree,
                                             [&from] { return [&from](uint64_t i) { return from.vertices[i]; }; });
     return OneSidedDistance{std::sqrt(samples.sum2 / static_cast<double>(options.num_samples)),
                             std::sqrt(std::max(samples.max2, vertices.max2))};

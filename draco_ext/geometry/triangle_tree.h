@@ -70,8 +70,8 @@ class TriangleTree {
   struct alignas(64) Node {
     float center[3][kWidth];
     float half_size[3][kWidth];  // negative in a missing child
-    uint32_t child[kWidth];  // a node, or the first slot of a leaf
-    uint32_t count[kWidth];  // 0: a node, else the number of triangles in the leaf
+    uint32_t child[kWidth];      // a node, or the first slot of a leaf
+    uint32_t count[kWidth];      // 0: a node, else the number of triangles in the leaf
   };
   struct Corners {
     Vec3f a, b, c;
@@ -79,7 +79,8 @@ class TriangleTree {
   struct Reference;  // a face while the tree is built
   struct Search;     // what a closest point query has found so far
 
-  uint32_t BuildNode(Reference* first, Reference* last, const Reference* all, int depth);
+  uint32_t BuildNode(Reference* first, Reference* last, const Reference* all, int depth,
+                     std::vector<Node>* nodes) const;
   void TestSlot(uint32_t slot, Search* search) const;
   ClosestPointResult Finish(const Search& search) const;
   void Traverse(Search* search) const;

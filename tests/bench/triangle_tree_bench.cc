@@ -43,7 +43,7 @@ void BM_Build(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(Scan().triangles.size()));
 }
-BENCHMARK(BM_Build)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Build)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 // Argument: distance to the mesh in millionths of its radius.
 void BM_ClosestPointCoherent(benchmark::State& state) {
@@ -86,19 +86,26 @@ void BM_IntersectLine(benchmark::State& state) {
 }
 BENCHMARK(BM_IntersectLine)->Unit(benchmark::kMillisecond);
 
-// The whole two-sided measurement on all cores. Argument: samples per side; items are samples on both sides.
+// The whole two-sided measurement on all cores. Arguments: samples per side, vertices too; items are samples on both
+// sides.
 void BM_SurfaceDistance(benchmark::State& state) {
   const StatusOr<SurfaceDistanceMeter> meter = SurfaceDistanceMeter::Create(Scan());
   const TriangleMesh other = Inflated(0.001f);
   SurfaceDistanceOptions options;
   options.num_samples = static_cast<uint64_t>(state.range(0));
+  options.max_at_vertices = state.range(1) != 0;
   for (auto _ : state) {
     const StatusOr<SurfaceDistance> distance = meter.value().Measure(other, options);
     benchmark::DoNotOptimize(distance.value().Rms());
   }
   state.SetItemsProcessed(state.iterations() * 2 * state.range(0));
 }
-BENCHMARK(BM_SurfaceDistance)->Arg(20'000)->Arg(200'000)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_SurfaceDistance)
+    ->Args({20'000, 0})
+    ->Args({200'000, 0})
+    ->Args({200'000, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace lacerta

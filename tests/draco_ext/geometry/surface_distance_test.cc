@@ -227,6 +227,21 @@ TEST(SurfaceDistance, AgreesWithAnIndependentToolOnHorse) {
   EXPECT_NEAR(d.Hausdorff() / diagonal, 11.3108e-4, 0.01e-4);
 }
 
+TEST(SurfaceDistance, VerticesSharpenTheMaximumOnly) {
+  // A needle on a plane: no sample falls on its tip.
+  TriangleMesh needle = shapes::GridWithBorder(40, 40);
+  const TriangleMesh plane = needle;
+  needle.positions[20 * 41 + 20].z = 1.0f;
+  SurfaceDistanceOptions options = Samples(1000);
+  const SurfaceDistance with = Measure(needle, plane, options);
+  options.max_at_vertices = false;
+  const SurfaceDistance without = Measure(needle, plane, options);
+  EXPECT_EQ(with.forward.max, 1.0);
+  EXPECT_LT(without.forward.max, 0.99);
+  EXPECT_GT(without.forward.max, 0.5);
+  EXPECT_EQ(with.forward.rms, without.forward.rms);
+}
+
 TEST(SurfaceDistance, BadMeshesAreRefusedByName) {
   const TriangleMesh good = shapes::Icosphere(1);
   const auto refuse = [&](const TriangleMesh& bad, const std::string& what) {
