@@ -149,13 +149,13 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   padding_ = std::max(largest * 0x1p-22f, FLT_MIN);
   nodes_.reserve(references.size() / 2 + 1);
   BuildNode(references.data(), references.data() + references.size(), references.data(), 0, &nodes_);
-  triangles_.reserve(references.size());
+  corners_.reserve(references.size());
   faces_.reserve(references.size());
   for (const Reference& reference : references) {
     const Triangle& t = mesh.triangles[reference.face];
     slots_[reference.face] = static_cast<uint32_t>(faces_.size());
     faces_.push_back(reference.face);
-    triangles_.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+    corners_.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
   }
 }
 
@@ -282,9 +282,9 @@ uint32_t TriangleTree::BuildNode(Reference* first, Reference* last, const Refere
 }
 
 void TriangleTree::TestSlot(uint32_t slot, Search* search) const {
-  const Corners& t = triangles_[slot];
+  const Corners& t = corners_[slot];
   TrianglePoint point;
-  if (!ClosestOnTriangle(search->pd, Vec3Cast<double>(t.a), Vec3Cast<double>(t.b), Vec3Cast<double>(t.c),
+  if (!ClosestOnTriangle(search->pd, Vec3Cast<double>(t[0]), Vec3Cast<double>(t[1]), Vec3Cast<double>(t[2]),
                          search->bound2, &point)) {
     return;
   }
@@ -338,13 +338,13 @@ void TriangleTree::Traverse(Search* search) const {
 ClosestPointResult TriangleTree::Finish(const Search& search) const {
   ClosestPointResult result;
   if (search.slot == SurfacePoint::kNone) return result;
-  const Corners& t = triangles_[search.slot];
+  const Corners& t = corners_[search.slot];
   const double b = search.best.b, c = search.best.c, a = std::max(1.0 - b - c, 0.0);
   result.point.face = faces_[search.slot];
   result.point.barycentric = {static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
-  const Vec3d corner = Vec3Cast<double>(t.a);
+  const Vec3d corner = Vec3Cast<double>(t[0]);
   result.point.position =
-      Vec3Cast<float>(corner + (Vec3Cast<double>(t.b) - corner) * b + (Vec3Cast<double>(t.c) - corner) * c);
+      Vec3Cast<float>(corner + (Vec3Cast<double>(t[1]) - corner) * b + (Vec3Cast<double>(t[2]) - corner) * c);
   result.squared_distance = static_cast<float>(search.best.squared_distance);
   return result;
 }
@@ -427,8 +427,8 @@ void TriangleTree::IntersectLine(const Vec3f& origin, const Vec3f& direction, fl
         continue;
       }
       for (uint32_t slot = node.child[k]; slot < node.child[k] + node.count[k]; ++slot) {
-        const Vec3d a = line.Map(triangles_[slot].a), b = line.Map(triangles_[slot].b),
-                    c = line.Map(triangles_[slot].c);
+        const Corners& corners = corners_[slot];
+        const Vec3d a = line.Map(corners[0]), b = line.Map(corners[1]), c = line.Map(corners[2]);
         const double u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x;
         if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) continue;
         const double sum = u + v + w;

@@ -181,16 +181,14 @@ TEST(SurfaceDistance, PeriodicTrianglesDoNotKeepStepWithTheSamples) {
 }
 
 TEST(SurfaceDistance, DoesNotDependOnTheNumberOfThreads) {
-  const TriangleMesh mesh = shapes::BumpySphere(4), other = Quantized(mesh, 8);
-  SurfaceDistance results[3];
-  int k = 0;
-  for (const int threads : {1, 2, 4}) {
+  // Large enough for the trees, too, to be built by several threads.
+  const TriangleMesh mesh = shapes::BumpySphere(5), other = Quantized(mesh, 8);
+  SurfaceDistance results[2];
+  for (const int threads : {1, 2}) {
     tbb::task_arena arena(threads);
-    arena.execute([&] { results[k] = Measure(mesh, other, Samples(50'001)); });
-    ++k;
+    arena.execute([&] { results[threads - 1] = Measure(mesh, other, Samples(50'001)); });
   }
   EXPECT_EQ(std::memcmp(&results[0], &results[1], sizeof(SurfaceDistance)), 0);
-  EXPECT_EQ(std::memcmp(&results[0], &results[2], sizeof(SurfaceDistance)), 0);
   EXPECT_GT(results[0].Rms(), 0.0);
 }
 
