@@ -46,6 +46,9 @@ namespace {
 // Queries done in a row by one thread. Sums are taken per block and then in the order of the blocks.
 constexpr uint64_t kBlockSize = 2048;
 
+// Squares of distances 100 dB below this are still in the range of float, in which the tree returns them.
+constexpr double kMinDiagonal = 1e-12;
+
 double Fraction(double x) { return x - std::floor(x); }
 
 // Walks through the samples of a surface in order. One sample falls into each of num_samples equal parts of the area;
@@ -182,6 +185,9 @@ StatusOr<SurfaceDistanceMeter> SurfaceDistanceMeter::Create(const TriangleMesh& 
   surface->diagonal = BoundingBoxDiagonal(original);
   if (!(surface->cumulated_area.back() > 0.0)) {
     return InvalidData("original: all triangles are degenerate, there is no area to sample");
+  }
+  if (!(surface->diagonal >= kMinDiagonal)) {
+    return InvalidData("original: its bounding box is smaller than 1e-12 units; scale the mesh up");
   }
   return SurfaceDistanceMeter(std::move(surface));
 }

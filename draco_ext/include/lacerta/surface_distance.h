@@ -63,15 +63,16 @@ double DistanceOfPsnr(double psnr, double diagonal);
 // not on the number of threads. Measure is const and may be called from several threads.
 class SurfaceDistanceMeter {
  public:
-  // Fails with kInvalidData when the original has no triangle, no area, an index out of range, or a coordinate that is
-  // not finite or beyond 1e18 in size. Degenerate triangles among others are fine.
+  // Fails with kInvalidData when the original has no triangle, no area, an index out of range, a coordinate that is not
+  // finite or beyond 1e18 in size, or a bounding box smaller than 1e-12. Degenerate triangles among others are fine.
   static StatusOr<SurfaceDistanceMeter> Create(const TriangleMesh& original);
 
   SurfaceDistanceMeter(SurfaceDistanceMeter&&) noexcept;
   SurfaceDistanceMeter& operator=(SurfaceDistanceMeter&&) noexcept;
   ~SurfaceDistanceMeter();
 
-  // Distance between the original and `mesh`. Fails as Create does, and with kInvalidArgument on options out of range.
+  // Distance between the original and `mesh`. Fails as Create does, except for the size of the box, and with
+  // kInvalidArgument on options out of range.
   StatusOr<SurfaceDistance> Measure(const TriangleMesh& mesh, const SurfaceDistanceOptions& options = {}) const;
 
   // Of the original's bounding box, model units.

@@ -139,7 +139,7 @@ TEST(SurfaceDistance, MeshWithItselfIsLossless) {
 
 TEST(SurfaceDistance, ConvergesWithSamples) {
   const TriangleMesh mesh = shapes::BumpySphere(5, 0.1f, 0.002f), other = Quantized(mesh, 9);
-  const double reference = Measure(mesh, other, Samples(4'000'000)).Rms();
+  const double reference = Measure(mesh, other, Samples(2'000'000)).Rms();
   const auto worst_db = [&](uint64_t count) {
     double worst = 0.0;
     for (uint32_t seed = 0; seed < 4; ++seed) {
@@ -264,6 +264,20 @@ TEST(SurfaceDistance, BadMeshesAreRefusedByName) {
   bad = good;
   bad.triangles = {{0, 0, 1}, {2, 2, 2}};
   refuse(bad, "degenerate");
+}
+
+TEST(SurfaceDistance, ScaleDoesNotMatterUntilItIsTooSmall) {
+  const TriangleMesh mesh = shapes::BumpySphere(3), other = Quantized(mesh, 12);
+  const double expected = Psnr(Measure(mesh, other, Samples(20'000)).Rms(), BoundingBoxDiagonal(mesh));
+  EXPECT_GT(expected, 80.0);
+  EXPECT_LT(expected, 95.0);
+  for (const float scale : {1e-11f, 1e-3f, 1e5f, 1e17f}) {
+    const TriangleMesh a = Moved(mesh, {}, scale), b = Moved(other, {}, scale);
+    EXPECT_NEAR(Psnr(Measure(a, b, Samples(20'000)).Rms(), BoundingBoxDiagonal(a)), expected, 0.05) << scale;
+  }
+  const Status status = SurfaceDistanceMeter::Create(Moved(mesh, {}, 1e-13f)).status();
+  EXPECT_EQ(status.code(), StatusCode::kInvalidData);
+  EXPECT_THAT(status.message(), HasSubstr("smaller than 1e-12"));
 }
 
 TEST(SurfaceDistance, UnusedBadVerticesDoNotMatter) {
