@@ -12,7 +12,10 @@ namespace {
 
 constexpr double kLn2 = 0.69314718055994530942;
 constexpr double kMinLog2Step = -24.0;  // finer than the mantissa of the floats that are coded
-constexpr int kKnotsPerOctave = 4;
+// Knots per octave of the step: few where the curve is nearly the straight line of high rate.
+constexpr double kFineLog2Step = -5.0;
+constexpr double kKnotsPerFineOctave = 2.0;
+constexpr double kKnotsPerOctave = 8.0;
 constexpr double kNegligibleRate = 1e-8;  // bits per sample
 
 }  // namespace
@@ -20,8 +23,9 @@ constexpr double kNegligibleRate = 1e-8;  // bits per sample
 struct RateDistortionTable::Knots {
   explicit Knots(double shape) : alpha(std::clamp(shape, kMinAlpha, kMaxAlpha)) {
     bool convex = true;
-    for (int k = 0;; ++k) {
-      const double step = std::exp2(kMinLog2Step + static_cast<double>(k) / kKnotsPerOctave);
+    double log2_step = kMinLog2Step;
+    for (;; log2_step += 1.0 / (log2_step < kFineLog2Step ? kKnotsPerFineOctave : kKnotsPerOctave)) {
+      const double step = std::exp2(log2_step);
       const QuantizerPoint point = EvaluateUniformQuantizer(alpha, step);
       if (point.rate < kNegligibleRate) break;
       log_steps.push_back(std::log(step));
