@@ -9,7 +9,7 @@ namespace lacerta {
 namespace {
 
 constexpr double kLn2 = 0.69314718055994530942;
-constexpr int kNumExactBins = 48;  // on either side of the zero bin
+constexpr int kNumExactBins = 24;  // on either side of the zero bin
 
 // sum over n of z^n / ((s + 1) ... (s + n)), which is P(s, z) s G(s) / (z^s e^-z).
 double LowerSeries(double s, double z) {

@@ -50,7 +50,7 @@ struct QuantizerPoint {
   double slope = 0.0;       // -h = -(dD/dq) / (dR/dq) > 0
 };
 // alpha in [kMinAlpha, kMaxAlpha]; q from 1e-8 to where P(|x| > q/2) is about 1e-12. The derivatives are exact; bins beyond the
-// first 48 are summed as the integral that they approach there.
+// first 24 are summed as the integral that they approach there.
 QuantizerPoint EvaluateUniformQuantizer(double alpha, double q);
 
 }  // namespace lacerta
