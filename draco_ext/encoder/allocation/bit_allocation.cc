@@ -157,4 +157,17 @@ double CommonBaseStep(Span<SetStatistics> sets, const BitAllocation& allocation)
   return count == 0 ? kInfinity : std::exp(log_sum / count);
 }
 
+std::vector<LevelSteps> StepsByLevel(Span<SetStatistics> sets, const BitAllocation& allocation, int num_levels) {
+  std::vector<LevelSteps> levels(num_levels);
+  for (size_t k = 0; k < sets.size(); ++k) {
+    const SetStatistics& set = sets[k];
+    if (set.level < 1 || set.level > num_levels) continue;
+    LevelSteps& level = levels[set.level - 1];
+    const float step = RoundStep(static_cast<float>(allocation.steps[k]));
+    if (set.kind == SetKind::kNormal) level.normal_step = step;
+    if (set.kind == SetKind::kTangential) level.tangential_step = step;
+  }
+  return levels;
+}
+
 }  // namespace lacerta

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "common/coefficient_sets.h"
 #include "encoder/allocation/rate_distortion_table.h"
 #include "encoder/allocation/set_statistics.h"
 #include "lacerta/mesh.h"
@@ -81,6 +82,10 @@ StatusOr<BitAllocation> AllocateForSlope(Span<SetStatistics> sets, double lambda
 // One step for all three coordinates of the base, whose lattice is cubic: the geometric mean of the steps of those that are
 // coded, or +inf where none is.
 double CommonBaseStep(Span<SetStatistics> sets, const BitAllocation& allocation);
+
+// The steps of levels 1 .. num_levels as a stream holds them: rounded (RoundStep), 0 where a set is not coded or not there,
+// without bias. sets may come in any order.
+std::vector<LevelSteps> StepsByLevel(Span<SetStatistics> sets, const BitAllocation& allocation, int num_levels);
 
 }  // namespace lacerta
 

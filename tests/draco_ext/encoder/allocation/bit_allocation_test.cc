@@ -319,6 +319,21 @@ TEST(BitAllocationTest, CommonBaseStepIsTheGeometricMeanOfCodedAxes) {
   EXPECT_EQ(CommonBaseStep(sets, allocation), kInfinity);
 }
 
+TEST(BitAllocationTest, StepsByLevelAreWhatAStreamHolds) {
+  const std::vector<SetStatistics> sets = TypicalSets(2);
+  BitAllocation allocation;
+  allocation.steps = {9.0, 9.0, 9.0, kInfinity, 0.5, 0.1, kInfinity};  // x y z (1,1) (1,2) (2,1) (2,2)
+  const std::vector<LevelSteps> steps = StepsByLevel(sets, allocation, 3);
+  ASSERT_EQ(steps.size(), 3u);
+  EXPECT_EQ(steps[0].tangential_step, 0.0f);
+  EXPECT_EQ(steps[0].normal_step, 0.5f);
+  EXPECT_NEAR(steps[1].tangential_step, 0.1f, 0.1f / 256);
+  EXPECT_EQ(steps[1].tangential_step, RoundStep(steps[1].tangential_step));
+  EXPECT_EQ(steps[1].normal_step, 0.0f);
+  EXPECT_EQ(steps[2].normal_step, 0.0f);
+  EXPECT_EQ(steps[2].tangential_step, 0.0f);
+}
+
 TEST(BitAllocationTest, RefusesBadArguments) {
   const auto expect = [](const StatusOr<BitAllocation>& result, const char* message) {
     ASSERT_FALSE(result.ok());
