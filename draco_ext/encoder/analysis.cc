@@ -55,7 +55,7 @@ StatusOr<std::vector<LevelCoefficients>> Analyze(const SemiRegularMesh& mesh) {
   return levels;
 }
 
-double NormalShare(const std::vector<LevelCoefficients>& levels, const NormalTolerance& tolerance) {
+double NormalDetailShare(const std::vector<LevelCoefficients>& levels, const NormalTolerance& tolerance) {
   size_t count = 0, normal = 0;
   for (const LevelCoefficients& level : levels) {
     const double absolute = tolerance.share_of_edge_length * level.mean_edge_length;

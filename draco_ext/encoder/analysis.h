@@ -30,8 +30,9 @@ struct NormalTolerance {
   double share_of_edge_length = 1e-4;   // at most this share of the level's mean edge length
 };
 
-// Share (0..1) of all details that are normal; 1 where there are none.
-double NormalShare(const std::vector<LevelCoefficients>& levels, const NormalTolerance& tolerance = {});
+// Share (0..1) of all details that are normal; 1 where there are none. Measured on the mesh alone: for one that comes from the
+// remesher, NormalShare in lacerta/remesh.h counts how its vertices were found.
+double NormalDetailShare(const std::vector<LevelCoefficients>& levels, const NormalTolerance& tolerance = {});
 
 }  // namespace lacerta
 

@@ -111,15 +111,15 @@ TEST(AnalyzeTest, RefusesWhatDoesNotFit) {
   expect(mesh, StatusCode::kInvalidData, "refers to vertex 9 of 4");
 }
 
-TEST(NormalShareTest, CountsBothTolerances) {
+TEST(NormalDetailShareTest, CountsBothTolerances) {
   LevelCoefficients level;
   level.mean_edge_length = 1.0;
   level.detail = {{0, 0, 1},        {0.04f, 0, 1},       {0.03f, 0.03f, 1},  {0.06f, 0, -1},  // 3 normal, 1 not
                   {0.9e-4f, 0, 0},  {0, 1.2e-4f, 0},     {0, 0, 0},          {0.5f, 0, 0.1f}};  // 2 normal, 2 not
-  EXPECT_DOUBLE_EQ(NormalShare({level}), 5.0 / 8);
-  EXPECT_DOUBLE_EQ(NormalShare({level}, {0.0, 0.0}), 2.0 / 8);
-  EXPECT_DOUBLE_EQ(NormalShare({level}, {10.0, 1.0}), 1.0);
-  EXPECT_DOUBLE_EQ(NormalShare({}), 1.0);
+  EXPECT_DOUBLE_EQ(NormalDetailShare({level}), 5.0 / 8);
+  EXPECT_DOUBLE_EQ(NormalDetailShare({level}, {0.0, 0.0}), 2.0 / 8);
+  EXPECT_DOUBLE_EQ(NormalDetailShare({level}, {10.0, 1.0}), 1.0);
+  EXPECT_DOUBLE_EQ(NormalDetailShare({}), 1.0);
 }
 
 }  // namespace
