@@ -14,14 +14,15 @@ constexpr double kLn2 = 0.69314718055994530942;
 
 Status CheckSet(const SetStatistics& set, size_t index) {
   const auto bad = [](double value) { return !std::isfinite(value) || value < 0.0; };
-  const char* what = bad(set.sigma)                                  ? "sigma"
-                     : !std::isfinite(set.alpha) || set.alpha <= 0.0 ? "alpha"
-                     : bad(set.weight)                               ? "weight"
-                     : bad(set.sample_fraction)                      ? "sample_fraction"
-                                                                     : nullptr;
+  const char* what = bad(set.sigma)                               ? "sigma"
+                     : bad(set.alpha) || set.alpha <= 0.0           ? "alpha"
+                     : !(set.active > 0.0 && set.active <= 1.0)     ? "active"
+                     : bad(set.weight)                              ? "weight"
+                     : bad(set.sample_fraction)                     ? "sample_fraction"
+                                                                    : nullptr;
   if (what == nullptr) return Status();
   return InvalidArgument(std::string(what) + " of set " + std::to_string(index) + " (level " + std::to_string(set.level) +
-                         ") is negative or not finite");
+                         ") is out of range");
 }
 
 Status CheckOptions(const AllocationOptions& options) {
@@ -52,7 +53,7 @@ StatusOr<BitAllocator> BitAllocator::Create(Span<SetStatistics> sets, const Allo
     const double gain = set.weight * set.sigma * set.sigma;
     if (!std::isfinite(gain)) return InvalidArgument("sigma of set " + std::to_string(k) + " is too large to be squared");
     if (gain <= 0.0 || set.sample_fraction <= 0.0) continue;
-    allocator.problems_.push_back({k, set, LogGain(set, options.weight_exponent), RateDistortionTable(set.alpha)});
+    allocator.problems_.push_back({k, set, LogGain(set, options.weight_exponent), RateDistortionTable(set.alpha, set.active)});
   }
   return allocator;
 }

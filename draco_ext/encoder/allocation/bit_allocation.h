@@ -4,7 +4,7 @@
 // sets share one multiplier lambda: h_k = dD_k / dR_k = -lambda a_k / (w_k sigma_k^2). Given lambda, the table [q; ln(-h)] of each
 // set's alpha yields its step and [R; ln(-h)] its rate; bisection finds the lambda whose rate is the target.
 //
-// Departs from the paper: sets without samples or with sigma == 0 are left out of the system; a set whose best step is worse
+// Departs from the paper: a set may be a mixture of zeros and a generalized Gaussian (SetStatistics::active); sets without samples or with sigma == 0 are left out of the system; a set whose best step is worse
 // than not coding it (alpha > 2 at low rate, where the curve is not convex) is not coded.
 #ifndef LACERTA_ENCODER_ALLOCATION_BIT_ALLOCATION_H_
 #define LACERTA_ENCODER_ALLOCATION_BIT_ALLOCATION_H_
@@ -41,7 +41,7 @@ struct BitAllocation {
 // The allocation problem of one mesh with its tables, to be solved for as many targets as wanted.
 class BitAllocator {
  public:
-  // Fails with kInvalidArgument where a statistic is not finite or negative, or an option is out of range.
+  // Fails with kInvalidArgument where a statistic or an option is out of range.
   static StatusOr<BitAllocator> Create(Span<SetStatistics> sets, const AllocationOptions& options);
 
   // Steps at a given multiplier lambda > 0. The rate falls as lambda grows.

@@ -89,11 +89,11 @@ struct Sums {
   double d = 0.0, d_prime = 0.0, r = 0.0, r_prime = 0.0;
 };
 
-void AddZeroBin(const Shape& shape, const Border& border, Sums* sums) {
-  const double mass = 2.0 * shape.moment_scale[0] * border.moments[0].lower;
-  const double mass_prime = border.density;  // two ends, each moving by 1/2 per unit of q
-  sums->d += 2.0 * shape.moment_scale[2] * border.moments[2].lower;
-  sums->d_prime += border.x * border.x * border.density;
+void AddZeroBin(const Shape& shape, const Border& border, double active, Sums* sums) {
+  const double mass = 1.0 - active + active * 2.0 * shape.moment_scale[0] * border.moments[0].lower;
+  const double mass_prime = active * border.density;  // two ends, each moving by 1/2 per unit of q
+  sums->d += active * 2.0 * shape.moment_scale[2] * border.moments[2].lower;
+  sums->d_prime += active * border.x * border.x * border.density;
   if (mass <= 0.0) return;
   sums->r -= mass * std::log2(mass);
   sums->r_prime -= mass_prime * (std::log2(mass) + 1.0 / kLn2);
@@ -170,19 +170,27 @@ GeneralizedGaussianFit FitGeneralizedGaussian(Span<float> samples, Centering cen
   return fit;
 }
 
-QuantizerPoint EvaluateUniformQuantizer(double alpha, double q) {
+QuantizerPoint EvaluateUniformQuantizer(double alpha, double q, double active) {
   constexpr double kNoMass = 1e-18;
   const Shape shape(alpha);
+  const double active_q = q * std::sqrt(active);  // in units of the standard deviation of the active samples
+  Sums outer;                                     // all bins but the zero bin, of the active samples alone
+  Border from(shape, 0.5 * active_q);
   Sums sums;
-  Border from(shape, 0.5 * q);
-  AddZeroBin(shape, from, &sums);
+  AddZeroBin(shape, from, active, &sums);
+  const double outer_mass = 2.0 * shape.moment_scale[0] * from.moments[0].upper, outer_mass_prime = -from.density;
   for (int m = 1; m <= kNumExactBins && from.moments[0].upper > kNoMass; ++m) {
-    const Border to(shape, (m + 0.5) * q);
-    AddBinPair(shape, from, to, q, &sums);
+    const Border to(shape, (m + 0.5) * active_q);
+    AddBinPair(shape, from, to, active_q, &outer);
     from = to;
   }
-  AddTails(shape, from, q, &sums);
-  return {sums.d, sums.r, -sums.d_prime / sums.r_prime};
+  AddTails(shape, from, active_q, &outer);
+  // A bin of mass P among the active samples has active * P in all.
+  sums.d += active * outer.d;
+  sums.d_prime += active * outer.d_prime;
+  sums.r += active * (outer.r - std::log2(active) * outer_mass);
+  sums.r_prime += active * (outer.r_prime - std::log2(active) * outer_mass_prime);
+  return {sums.d / active, sums.r, -sums.d_prime / (active * sums.r_prime)};
 }
 
 }  // namespace lacerta

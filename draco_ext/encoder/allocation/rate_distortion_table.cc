@@ -21,12 +21,12 @@ constexpr double kNegligibleRate = 1e-8;  // bits per sample
 }  // namespace
 
 struct RateDistortionTable::Knots {
-  explicit Knots(double shape) : alpha(std::clamp(shape, kMinAlpha, kMaxAlpha)) {
+  Knots(double shape, double active) : alpha(std::clamp(shape, kMinAlpha, kMaxAlpha)) {
     bool convex = true;
     double log2_step = kMinLog2Step;
     for (;; log2_step += 1.0 / (log2_step < kFineLog2Step ? kKnotsPerFineOctave : kKnotsPerOctave)) {
       const double step = std::exp2(log2_step);
-      const QuantizerPoint point = EvaluateUniformQuantizer(alpha, step);
+      const QuantizerPoint point = EvaluateUniformQuantizer(alpha, step, active);
       if (point.rate < kNegligibleRate) break;
       log_steps.push_back(std::log(step));
       rates.push_back(point.rate);
@@ -47,7 +47,7 @@ struct RateDistortionTable::Knots {
   std::vector<double> log_slopes;  // shorter: as far as the slope grows with the step
 };
 
-RateDistortionTable::RateDistortionTable(double alpha) : RateDistortionTable(Knots(alpha)) {}
+RateDistortionTable::RateDistortionTable(double alpha, double active) : RateDistortionTable(Knots(alpha, active)) {}
 
 RateDistortionTable::RateDistortionTable(Knots knots)
     : alpha_(knots.alpha),

@@ -10,12 +10,12 @@
 
 namespace lacerta {
 
-// The operational rate-distortion curve of the uniform quantizer on a generalized Gaussian of variance 1. Steps are in units of sigma,
+// The operational rate-distortion curve of the uniform quantizer on a generalized Gaussian of variance 1, mixed with zeros. Steps are in units of sigma,
 // rates in bits per sample, distortions in units of sigma^2, slopes -h = -dD/dR.
 class RateDistortionTable {
  public:
-  // alpha is brought into [kMinAlpha, kMaxAlpha].
-  explicit RateDistortionTable(double alpha);
+  // alpha is brought into [kMinAlpha, kMaxAlpha]; active: share in (0, 1] of the samples that are not exactly zero.
+  explicit RateDistortionTable(double alpha, double active = 1.0);
 
   double alpha() const { return alpha_; }
 

@@ -220,6 +220,23 @@ TEST(BitAllocationTest, AgreesWithBruteForce) {
   }
 }
 
+TEST(BitAllocationTest, MixtureWithZerosTakesPartInTheSystem) {
+  std::vector<SetStatistics> sets = TypicalSets(4);
+  for (size_t k = 3; k < sets.size(); k += 2) sets[k].active = 0.02;
+  for (const double target : {0.1, 1.0, 4.0}) {
+    const BitAllocation allocation = Allocate(sets, target);
+    EXPECT_LE(allocation.predicted_rate, target);
+    EXPECT_GE(allocation.predicted_rate, 0.999 * target);
+    for (size_t k = 3; k < sets.size(); k += 2) {
+      if (!std::isfinite(allocation.steps[k])) continue;
+      const QuantizerPoint point = EvaluateUniformQuantizer(sets[k].alpha, allocation.steps[k] / sets[k].sigma, 0.02);
+      const double lambda = sets[k].weight * sets[k].sigma * sets[k].sigma * point.slope / sets[k].sample_fraction;
+      EXPECT_NEAR(lambda, allocation.lambda, 0.005 * allocation.lambda) << "set " << k << " target " << target;
+      EXPECT_LT(allocation.rates[k], 0.02 * 26 + 0.15);  // the entropy of the zero flag and at most 26 bits of each active sample
+    }
+  }
+}
+
 TEST(BitAllocationTest, LeavesOutSetsWithoutSpreadOrSamples) {
   std::vector<SetStatistics> sets = TypicalSets(3);
   sets[1].sigma = 0.0;
@@ -360,6 +377,9 @@ TEST(BitAllocationTest, RefusesBadArguments) {
     sets = good;
     sets[0].alpha = bad;
     expect(AllocateBits(sets, 1.0), "alpha of set 0");
+    sets = good;
+    sets[6].active = bad;
+    expect(AllocateBits(sets, 1.0), "active of set 6");
   }
   std::vector<SetStatistics> sets = good;
   sets[2].sigma = 1e200;

@@ -150,6 +150,31 @@ TEST(UniformQuantizerTest, SlopeIsTheDerivative) {
   }
 }
 
+TEST(UniformQuantizerTest, MixtureWithZerosMatchesDirectSums) {
+  // A share of zeros beside a Laplacian: variance 1 in all, so the Laplacian has variance 1 / active.
+  for (const double active : {0.003, 0.1, 0.6}) {
+    for (const double q : {0.3, 1.0, 4.0, 12.0}) {
+      SCOPED_TRACE(::testing::Message() << "active " << active << " q " << q);
+      const double c = std::sqrt(2.0 * active);  // of the density c / 2 exp(-c |x|)
+      double mass0 = 1 - active * std::exp(-c * q / 2), rate = -mass0 * std::log2(mass0), outer_second = 0.0;
+      for (int m = 1; m < 20000; ++m) {
+        const double u = (m - 0.5) * q, v = (m + 0.5) * q, eu = std::exp(-c * u), ev = std::exp(-c * v);
+        const double mass = 0.5 * active * (eu - ev);
+        if (mass < 1e-18) break;
+        const double first = 0.5 * active * ((u + 1 / c) * eu - (v + 1 / c) * ev);
+        rate -= 2 * mass * std::log2(mass);
+        outer_second += 2 * first * first / mass;
+      }
+      const QuantizerPoint point = EvaluateUniformQuantizer(1.0, q, active);
+      EXPECT_NEAR(point.rate, rate, 1e-4 * rate);
+      EXPECT_NEAR(point.distortion, 1 - outer_second, 1e-4 * point.distortion);
+      const double step = 1e-4 * q;
+      const QuantizerPoint below = EvaluateUniformQuantizer(1.0, q - step, active), above = EvaluateUniformQuantizer(1.0, q + step, active);
+      EXPECT_NEAR(point.slope, -(above.distortion - below.distortion) / (above.rate - below.rate), 1e-5 * point.slope);
+    }
+  }
+}
+
 TEST(UniformQuantizerTest, ApproachesTheHighRateLimit) {
   const double ln2 = std::log(2.0);
   for (const double alpha : {0.5, 0.7, 1.0, 2.0, 4.0}) {

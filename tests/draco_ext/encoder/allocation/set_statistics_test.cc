@@ -53,6 +53,26 @@ TEST(DescribeTest, StatisticsAreThoseOfTheSamples) {
   EXPECT_NEAR(sets[3].sample_fraction, 6.0 / 18, 1e-12);
 }
 
+TEST(DescribeTest, ZeroesAreSetApart) {
+  LevelCoefficients level;
+  level.mean_edge_length = 1.0;
+  level.detail = {{1, -1, 0.5f}, {1e-6f, 0, 0.5f}, {0, -1e-5f, 0.5f}, {0, 0, -0.5f}};
+  const std::vector<Vec3f> positions(8);
+  const SetStatistics apart = Describe(positions, 4, {level}, {4.0, 1.0})[3];
+  EXPECT_DOUBLE_EQ(apart.active, 0.25);
+  EXPECT_EQ(apart.count, 8u);
+  EXPECT_NEAR(apart.sigma, 0.5, 1e-9);  // of all eight
+  EXPECT_NEAR(apart.sample_fraction, 1.0 / 3, 1e-12);
+  const SetStatistics paper = Describe(positions, 4, {level}, {4.0, 1.0}, {0.0})[3];
+  EXPECT_EQ(paper.active, 1.0);
+  EXPECT_NEAR(paper.sigma, 0.5, 1e-9);
+  EXPECT_LT(paper.alpha, apart.alpha);
+  level.detail = {{0, 0, 1}, {1e-5f, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  const SetStatistics nothing = Describe(positions, 4, {level}, {4.0, 1.0})[3];
+  EXPECT_EQ(nothing.sigma, 0.0);
+  EXPECT_EQ(nothing.active, 1.0);
+}
+
 TEST(DescribeTest, MeshWithoutLevelsHasTheBaseSetsAlone) {
   const TriangleMesh base = shapes::Tetrahedron();
   const std::vector<SetStatistics> sets = Describe(base.positions, 4, {}, RegularEnergies(0));
