@@ -16,8 +16,9 @@ Status CheckShape(const SemiRegularMesh& mesh, const Topology& base) {
   if (mesh.num_levels < 0) return InvalidArgument("a mesh cannot have " + std::to_string(mesh.num_levels) + " levels");
   const LevelCounts counts = SubdividedCounts({base.num_vertices, base.num_edges(), base.num_faces()}, mesh.num_levels);
   if (counts.faces > std::numeric_limits<uint32_t>::max() || counts.vertices != mesh.positions.size()) {
-    return InvalidArgument("a mesh of " + std::to_string(mesh.num_levels) + " levels on this base has " + std::to_string(counts.vertices) +
-                           " vertices, but " + std::to_string(mesh.positions.size()) + " positions were given");
+    return InvalidArgument("a mesh of " + std::to_string(mesh.num_levels) + " levels on this base has " +
+                           std::to_string(counts.vertices) + " vertices, but " + std::to_string(mesh.positions.size()) +
+                           " positions were given");
   }
   for (size_t v = 0; v < mesh.positions.size(); ++v) {
     const Vec3f& p = mesh.positions[v];
@@ -27,7 +28,8 @@ Status CheckShape(const SemiRegularMesh& mesh, const Topology& base) {
   return Status();
 }
 
-LevelCoefficients AnalyzeLevel(const Topology& coarse, const std::vector<Vec3f>& coarse_positions, Span<Vec3f> new_positions) {
+LevelCoefficients AnalyzeLevel(const Topology& coarse, const std::vector<Vec3f>& coarse_positions,
+                               Span<Vec3f> new_positions) {
   const std::vector<Vec3f> predicted = PredictMidpoints(coarse, StencilTable(coarse), coarse_positions);
   const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, coarse_positions, predicted);
   LevelCoefficients level;

@@ -13,11 +13,13 @@
 namespace lacerta::shapes {
 
 // Positions of the finest level from base positions (#V0) and the details of all levels.
-inline std::vector<Vec3f> Synthesize(Topology topology, std::vector<Vec3f> positions, const std::vector<LevelCoefficients>& levels) {
+inline std::vector<Vec3f> Synthesize(Topology topology, std::vector<Vec3f> positions,
+                                     const std::vector<LevelCoefficients>& levels) {
   for (const LevelCoefficients& level : levels) {
     const std::vector<Vec3f> predicted = PredictMidpoints(topology, StencilTable(topology), positions);
     const std::vector<LocalFrame> frames = ComputeLocalFrames(topology, positions, predicted);
-    for (uint32_t e = 0; e < topology.num_edges(); ++e) positions.push_back(predicted[e] + frames[e].ToWorld(level.detail[e]));
+    for (uint32_t e = 0; e < topology.num_edges(); ++e)
+      positions.push_back(predicted[e] + frames[e].ToWorld(level.detail[e]));
     topology = Refine(topology);
   }
   return positions;

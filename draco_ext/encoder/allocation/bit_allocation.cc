@@ -14,15 +14,15 @@ constexpr double kLn2 = 0.69314718055994530942;
 
 Status CheckSet(const SetStatistics& set, size_t index) {
   const auto bad = [](double value) { return !std::isfinite(value) || value < 0.0; };
-  const char* what = bad(set.sigma)                               ? "sigma"
-                     : bad(set.alpha) || set.alpha <= 0.0           ? "alpha"
-                     : !(set.active > 0.0 && set.active <= 1.0)     ? "active"
-                     : bad(set.weight)                              ? "weight"
-                     : bad(set.sample_fraction)                     ? "sample_fraction"
-                                                                    : nullptr;
+  const char* what = bad(set.sigma)                             ? "sigma"
+                     : bad(set.alpha) || set.alpha <= 0.0       ? "alpha"
+                     : !(set.active > 0.0 && set.active <= 1.0) ? "active"
+                     : bad(set.weight)                          ? "weight"
+                     : bad(set.sample_fraction)                 ? "sample_fraction"
+                                                                : nullptr;
   if (what == nullptr) return Status();
-  return InvalidArgument(std::string(what) + " of set " + std::to_string(index) + " (level " + std::to_string(set.level) +
-                         ") is out of range");
+  return InvalidArgument(std::string(what) + " of set " + std::to_string(index) + " (level " +
+                         std::to_string(set.level) + ") is out of range");
 }
 
 Status CheckOptions(const AllocationOptions& options) {
@@ -30,7 +30,8 @@ Status CheckOptions(const AllocationOptions& options) {
     return InvalidArgument("weight_exponent must lie in 0..2, not " + std::to_string(options.weight_exponent));
   }
   if (!(options.min_tangential_ratio >= 0.0 && std::isfinite(options.min_tangential_ratio))) {
-    return InvalidArgument("min_tangential_ratio must be 0 or more, not " + std::to_string(options.min_tangential_ratio));
+    return InvalidArgument("min_tangential_ratio must be 0 or more, not " +
+                           std::to_string(options.min_tangential_ratio));
   }
   return Status();
 }
@@ -51,9 +52,11 @@ StatusOr<BitAllocator> BitAllocator::Create(Span<SetStatistics> sets, const Allo
     const SetStatistics& set = sets[k];
     LACERTA_RETURN_IF_ERROR(CheckSet(set, k));
     const double gain = set.weight * set.sigma * set.sigma;
-    if (!std::isfinite(gain)) return InvalidArgument("sigma of set " + std::to_string(k) + " is too large to be squared");
+    if (!std::isfinite(gain))
+      return InvalidArgument("sigma of set " + std::to_string(k) + " is too large to be squared");
     if (gain <= 0.0 || set.sample_fraction <= 0.0) continue;
-    allocator.problems_.push_back({k, set, LogGain(set, options.weight_exponent), RateDistortionTable(set.alpha, set.active)});
+    allocator.problems_.push_back(
+        {k, set, LogGain(set, options.weight_exponent), RateDistortionTable(set.alpha, set.active)});
   }
   return allocator;
 }
@@ -67,10 +70,12 @@ double BitAllocator::FreeStep(const Problem& problem, double log_slope) {
   return cost < 1.0 ? step : kInfinity;  // not coding costs a distortion of 1 and no bit
 }
 
-double BitAllocator::TangentialFloor(const Problem& tangential, double lambda, const std::vector<double>& free_steps) const {
+double BitAllocator::TangentialFloor(const Problem& tangential, double lambda,
+                                     const std::vector<double>& free_steps) const {
   double normal_step = kInfinity;
   for (const Problem& other : problems_) {
-    if (other.set.kind == SetKind::kNormal && other.set.level == tangential.set.level) normal_step = free_steps[other.index];
+    if (other.set.kind == SetKind::kNormal && other.set.level == tangential.set.level)
+      normal_step = free_steps[other.index];
   }
   if (!std::isfinite(normal_step)) {  // at high rate -h = 2 ln 2 step^2 / (12 sigma^2) whatever the density
     const double slope = lambda / std::exp(tangential.log_gain) * tangential.set.sigma * tangential.set.sigma;
@@ -103,7 +108,8 @@ BitAllocation BitAllocator::ForSlope(double lambda) const {
     result.steps[problem.index] = step;
     result.rates[problem.index] = rate;
     result.predicted_rate += set.sample_fraction * rate;
-    result.predicted_distortion += set.weight * set.sigma * set.sigma * problem.table.DistortionAtStep(step / set.sigma);
+    result.predicted_distortion +=
+        set.weight * set.sigma * set.sigma * problem.table.DistortionAtStep(step / set.sigma);
   }
   return result;
 }
@@ -134,7 +140,8 @@ StatusOr<BitAllocation> BitAllocator::ForRate(double target) const {
   return best;
 }
 
-StatusOr<BitAllocation> AllocateBits(Span<SetStatistics> sets, double target_bits_per_sample, const AllocationOptions& options) {
+StatusOr<BitAllocation> AllocateBits(Span<SetStatistics> sets, double target_bits_per_sample,
+                                     const AllocationOptions& options) {
   LACERTA_ASSIGN_OR_RETURN(const BitAllocator allocator, BitAllocator::Create(sets, options));
   return allocator.ForRate(target_bits_per_sample);
 }

@@ -69,7 +69,8 @@ struct Shape {
 
 // The density and the partial moments at one bin border x >= 0.
 struct Border {
-  Border(const Shape& shape, double at) : x(at), z(std::pow(shape.b * at, shape.alpha)), density(shape.a * std::exp(-z)) {
+  Border(const Shape& shape, double at)
+      : x(at), z(std::pow(shape.b * at, shape.alpha)), density(shape.a * std::exp(-z)) {
     for (int k = 0; k < 3; ++k) moments[k] = IncompleteGammaWith((k + 1) / shape.alpha, z, shape.gamma[k]);
   }
 
@@ -113,8 +114,8 @@ void AddBinPair(const Shape& shape, const Border& from, const Border& to, double
   sums->r_prime -= 2.0 * mass_prime * (std::log2(mass) + 1.0 / kLn2);
 }
 
-// All bins beyond `from` on both sides: the density is nearly linear across each of them, so that the error is q^2 / 12 and
-// the entropy is -int p log2(p q).
+// All bins beyond `from` on both sides: the density is nearly linear across each of them, so that the error is q^2 / 12
+// and the entropy is -int p log2(p q).
 void AddTails(const Shape& shape, const Border& from, double q, Sums* sums) {
   const double mass = shape.moment_scale[0] * from.moments[0].upper;
   if (mass <= 0.0) return;

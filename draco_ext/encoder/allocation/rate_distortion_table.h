@@ -1,8 +1,8 @@
 // Tables of rate and step against the slope of the rate-distortion curve: [Payan & Antonini 2004] Sec. IV, the tables
 // [R; ln(-h)] and [q; ln(-h)] that make bit allocation a search over one number.
 //
-// Departs from the paper: a table is made for the very alpha of a set, in well under a millisecond, instead of being picked
-// from a stored grid of shapes.
+// Departs from the paper: a table is made for the very alpha of a set, in well under a millisecond, instead of being
+// picked from a stored grid of shapes.
 #ifndef LACERTA_ENCODER_ALLOCATION_RATE_DISTORTION_TABLE_H_
 #define LACERTA_ENCODER_ALLOCATION_RATE_DISTORTION_TABLE_H_
 
@@ -10,8 +10,8 @@
 
 namespace lacerta {
 
-// The operational rate-distortion curve of the uniform quantizer on a generalized Gaussian of variance 1, mixed with zeros. Steps are in units of sigma,
-// rates in bits per sample, distortions in units of sigma^2, slopes -h = -dD/dR.
+// The operational rate-distortion curve of the uniform quantizer on a generalized Gaussian of variance 1, mixed with
+// zeros. Steps are in units of sigma, rates in bits per sample, distortions in units of sigma^2, slopes -h = -dD/dR.
 class RateDistortionTable {
  public:
   // alpha is brought into [kMinAlpha, kMaxAlpha]; active: share in (0, 1] of the samples that are not exactly zero.
@@ -19,8 +19,8 @@ class RateDistortionTable {
 
   double alpha() const { return alpha_; }
 
-  // ln(-h) from the finest tabulated step (2^-24) to the coarsest: the one that codes next to nothing or, for alpha > 2,
-  // where the curve stops being convex.
+  // ln(-h) from the finest tabulated step (2^-24) to the coarsest: the one that codes next to nothing or, for alpha >
+  // 2, where the curve stops being convex.
   double min_log_slope() const { return rate_of_slope_.min_x(); }
   double max_log_slope() const { return rate_of_slope_.max_x(); }
 

@@ -9,7 +9,8 @@
 namespace lacerta {
 namespace {
 
-SetStatistics DescribeSet(int level, SetKind kind, std::vector<float> samples, double zero_below, double energy, size_t num_vertices) {
+SetStatistics DescribeSet(int level, SetKind kind, std::vector<float> samples, double zero_below, double energy,
+                          size_t num_vertices) {
   const size_t count = samples.size();
   if (zero_below > 0.0) {
     const auto is_zero = [zero_below](float x) { return std::fabs(x) <= zero_below; };
@@ -23,8 +24,9 @@ SetStatistics DescribeSet(int level, SetKind kind, std::vector<float> samples, d
 
 }  // namespace
 
-std::vector<SetStatistics> Describe(Span<Vec3f> positions, size_t num_base_vertices, const std::vector<LevelCoefficients>& levels,
-                                    const std::vector<double>& energies, const DescribeOptions& options) {
+std::vector<SetStatistics> Describe(Span<Vec3f> positions, size_t num_base_vertices,
+                                    const std::vector<LevelCoefficients>& levels, const std::vector<double>& energies,
+                                    const DescribeOptions& options) {
   std::vector<SetStatistics> sets;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<float> samples;
@@ -40,8 +42,10 @@ std::vector<SetStatistics> Describe(Span<Vec3f> positions, size_t num_base_verti
     }
     const int level = static_cast<int>(i) + 1;
     const double zero_below = options.zero_share_of_edge_length * levels[i].mean_edge_length;
-    sets.push_back(DescribeSet(level, SetKind::kTangential, std::move(tangential), zero_below, energies[i + 1], positions.size()));
-    sets.push_back(DescribeSet(level, SetKind::kNormal, std::move(normal), zero_below, energies[i + 1], positions.size()));
+    sets.push_back(
+        DescribeSet(level, SetKind::kTangential, std::move(tangential), zero_below, energies[i + 1], positions.size()));
+    sets.push_back(
+        DescribeSet(level, SetKind::kNormal, std::move(normal), zero_below, energies[i + 1], positions.size()));
   }
   return sets;
 }

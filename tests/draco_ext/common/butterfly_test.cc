@@ -80,9 +80,9 @@ TEST(VisitStencilTest, RegularEdgeHasTheEightPointRule) {
   // Vertex (c, r) of a 6 x 6 torus is 6 r + c; the edge from (2, 2) to (3, 2), its faces up right and down left.
   const Topology t = shapes::TopologyOf(shapes::Torus(6, 6));
   const auto id = [](uint32_t c, uint32_t r) { return 6 * r + c; };
-  const std::map<uint32_t, float> expected = {
-      {id(2, 2), 0.5f},     {id(3, 2), 0.5f},     {id(3, 3), 0.125f},   {id(2, 1), 0.125f},
-      {id(2, 3), -0.0625f}, {id(4, 3), -0.0625f}, {id(1, 1), -0.0625f}, {id(3, 1), -0.0625f}};
+  const std::map<uint32_t, float> expected = {{id(2, 2), 0.5f},     {id(3, 2), 0.5f},     {id(3, 3), 0.125f},
+                                              {id(2, 1), 0.125f},   {id(2, 3), -0.0625f}, {id(4, 3), -0.0625f},
+                                              {id(1, 1), -0.0625f}, {id(3, 1), -0.0625f}};
   EXPECT_EQ(StencilOf(t, FindEdge(t, id(2, 2), id(3, 2))), expected);
 }
 
@@ -98,7 +98,7 @@ TEST(VisitStencilTest, TwoExtraordinaryEndsAreAveraged) {
 TEST(VisitStencilTest, OneExtraordinaryEndUsesItsRingAlone) {
   Topology t = shapes::TopologyOf(shapes::Icosahedron());
   const uint32_t num_base = t.num_vertices;
-  t = Refine(t);  // now every base vertex has five regular neighbors
+  t = Refine(t);                          // now every base vertex has five regular neighbors
   const uint32_t e = t.face_edges[0][1];  // at corner 0 of face 0, base vertex 0
   const uint32_t other = t.edges[e][0] == 0 ? t.edges[e][1] : t.edges[e][0];
   ASSERT_GE(other, num_base);
@@ -120,7 +120,8 @@ TEST(VisitStencilTest, BorderEdgeUsesTheBorderCurveAlone) {
 TEST(PredictMidpointsTest, SurfacesThatShareABorderPredictTheSamePointsOnIt) {
   // The same border curve, filled by a fan around one vertex and, turned over, by a triangle strip.
   const TriangleMesh fan = shapes::Fan(6);
-  TriangleMesh strip{std::vector<Vec3f>(fan.positions.begin() + 1, fan.positions.end()), {{0, 5, 1}, {1, 5, 4}, {1, 4, 2}, {2, 4, 3}}};
+  TriangleMesh strip{std::vector<Vec3f>(fan.positions.begin() + 1, fan.positions.end()),
+                     {{0, 5, 1}, {1, 5, 4}, {1, 4, 2}, {2, 4, 3}}};
   const Topology a = shapes::TopologyOf(fan), b = shapes::TopologyOf(strip);
   const std::vector<Vec3f> pa = PredictMidpoints(a, StencilTable(a), fan.positions);
   const std::vector<Vec3f> pb = PredictMidpoints(b, StencilTable(b), strip.positions);
@@ -144,7 +145,8 @@ TEST(PredictMidpointsTest, ReproducesCubicsOnTheRegularGrid) {
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
     const Vec3f& a = mesh.positions[t.edges[e][0]];
     const Vec3f& b = mesh.positions[t.edges[e][1]];
-    ExpectNear(midpoints[e], {(a.x + b.x) / 2, (a.y + b.y) / 2, midpoints[e].z}, t.on_border[t.edges[e][0]] ? 8.0f : 1e-6f);
+    ExpectNear(midpoints[e], {(a.x + b.x) / 2, (a.y + b.y) / 2, midpoints[e].z},
+               t.on_border[t.edges[e][0]] ? 8.0f : 1e-6f);
     if (t.on_border[t.edges[e][0]] || t.on_border[t.edges[e][1]]) continue;
     EXPECT_NEAR(midpoints[e].z, cubic(midpoints[e].x, midpoints[e].y), 1e-5);
     ++checked;
@@ -212,7 +214,8 @@ TEST(PredictMidpointsTest, WorkPerEdgeIsBoundedAtTheHighestValence) {
 }
 
 TEST(PredictMidpointsTest, HighestStencilValenceIsStillExtraordinary) {
-  const TriangleMesh at_limit = shapes::Bipyramid(kMaxStencilValence), beyond = shapes::Bipyramid(kMaxStencilValence + 1);
+  const TriangleMesh at_limit = shapes::Bipyramid(kMaxStencilValence),
+                     beyond = shapes::Bipyramid(kMaxStencilValence + 1);
   const Topology a = shapes::TopologyOf(at_limit), b = shapes::TopologyOf(beyond);
   EXPECT_TRUE(IsExtraordinary(a, kMaxStencilValence));
   EXPECT_FALSE(IsExtraordinary(b, kMaxStencilValence + 1));

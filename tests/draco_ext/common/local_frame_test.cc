@@ -29,8 +29,9 @@ void ExpectOrthonormal(const LocalFrame& frame) {
 }
 
 TEST(LocalFrameTest, IsOrthonormalOnAllShapes) {
-  for (const TriangleMesh& mesh : {shapes::Pillow(), shapes::Tetrahedron(), shapes::Bipyramid(4), shapes::Bipyramid(50),
-                                   shapes::Icosahedron(), shapes::Torus(4, 5), shapes::Grid(3), shapes::SingleTriangle()}) {
+  for (const TriangleMesh& mesh :
+       {shapes::Pillow(), shapes::Tetrahedron(), shapes::Bipyramid(4), shapes::Bipyramid(50), shapes::Icosahedron(),
+        shapes::Torus(4, 5), shapes::Grid(3), shapes::SingleTriangle()}) {
     for (const LocalFrame& frame : FramesOf(mesh)) ExpectOrthonormal(frame);
   }
 }
@@ -91,13 +92,14 @@ TEST(LocalFrameTest, LocalAndWorldAreInverse) {
 }
 
 TEST(LocalFrameTest, DegenerateSurfacesStillHaveOrthonormalFrames) {
-  const float kBig = 1e30f, kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
+  const float kBig = 1e30f, kInf = std::numeric_limits<float>::infinity(),
+              kNan = std::numeric_limits<float>::quiet_NaN();
   std::vector<TriangleMesh> meshes(5, shapes::Bipyramid(4));
   for (size_t v = 0; v < meshes[0].positions.size(); ++v) {
     const float i = static_cast<float>(v);
-    meshes[0].positions[v] = {1, 2, 3};                   // a point
-    meshes[1].positions[v] = {0.1f * i, 0, 0};            // a line along x
-    meshes[2].positions[v] = {0, 0, i * i};               // a line along z, the axis that stands in for the normal
+    meshes[0].positions[v] = {1, 2, 3};                      // a point
+    meshes[1].positions[v] = {0.1f * i, 0, 0};               // a line along x
+    meshes[2].positions[v] = {0, 0, i * i};                  // a line along z, the axis that stands in for the normal
     meshes[3].positions[v] = meshes[3].positions[v] * kBig;  // areas overflow
     meshes[4].positions[v] = v == 0 ? Vec3f{kNan, 0, 0} : v == 1 ? Vec3f{0, kInf, 0} : meshes[4].positions[v];
   }
@@ -107,7 +109,8 @@ TEST(LocalFrameTest, DegenerateSurfacesStillHaveOrthonormalFrames) {
 }
 
 TEST(LocalFrameTest, EdgeNearlyParallelToTheNormalStillYieldsAnOrthonormalFrame) {
-  // A single edge leans out of the plane of the fine triangles by 2e-3 of a right angle: midpoints are given, not predicted.
+  // A single edge leans out of the plane of the fine triangles by 2e-3 of a right angle: midpoints are given, not
+  // predicted.
   const Topology t = shapes::TopologyOf(shapes::SingleTriangle());
   for (const float lean : {1e-4f, 9e-4f, 1.1e-3f, 2e-3f, 1e-2f}) {
     SCOPED_TRACE(lean);

@@ -41,7 +41,8 @@ int EulerCharacteristic(const Topology& t) {
 }
 
 uint32_t CountBorderEdges(const Topology& t) {
-  return static_cast<uint32_t>(std::count_if(t.edge_faces.begin(), t.edge_faces.end(), [](const auto& f) { return f[1] == kNone; }));
+  return static_cast<uint32_t>(
+      std::count_if(t.edge_faces.begin(), t.edge_faces.end(), [](const auto& f) { return f[1] == kNone; }));
 }
 
 // Every table agrees with every other one.
@@ -124,7 +125,10 @@ TEST(BuildTopologyTest, NamesEachDefect) {
       {"same face twice", 3, {{0, 1, 2}, {1, 2, 0}}, "opposite orientation meet at edge"},
       {"isolated vertex", 4, {{0, 1, 2}}, "vertex 3 has no face"},
       {"pinched border", 5, {{0, 1, 2}, {0, 3, 4}}, "vertex 0 joins several fans"},
-      {"closed and open fan", 6, {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}, {0, 4, 5}}, "vertex 0 joins several fans"},
+      {"closed and open fan",
+       6,
+       {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}, {0, 4, 5}},
+       "vertex 0 joins several fans"},
       {"two closed fans",
        7,
        {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}},

@@ -20,8 +20,9 @@ SemiRegularMesh BumpyMesh(const TriangleMesh& base, int num_levels) {
 }
 
 TEST(AnalyzeTest, SynthesisReturnsTheMeshToFloatAccuracy) {
-  for (const TriangleMesh& base : {shapes::Pillow(), shapes::Tetrahedron(), shapes::Bipyramid(4), shapes::Bipyramid(17),
-                                   shapes::Icosahedron(), shapes::Torus(4, 5), shapes::Grid(3), shapes::Fan(5), shapes::SingleTriangle()}) {
+  for (const TriangleMesh& base :
+       {shapes::Pillow(), shapes::Tetrahedron(), shapes::Bipyramid(4), shapes::Bipyramid(17), shapes::Icosahedron(),
+        shapes::Torus(4, 5), shapes::Grid(3), shapes::Fan(5), shapes::SingleTriangle()}) {
     const SemiRegularMesh mesh = BumpyMesh(base, 3);
     const StatusOr<std::vector<LevelCoefficients>> levels = Analyze(mesh);
     ASSERT_TRUE(levels.ok()) << levels.status().message();
@@ -114,8 +115,8 @@ TEST(AnalyzeTest, RefusesWhatDoesNotFit) {
 TEST(NormalDetailShareTest, CountsBothTolerances) {
   LevelCoefficients level;
   level.mean_edge_length = 1.0;
-  level.detail = {{0, 0, 1},        {0.04f, 0, 1},       {0.03f, 0.03f, 1},  {0.06f, 0, -1},  // 3 normal, 1 not
-                  {0.9e-4f, 0, 0},  {0, 1.2e-4f, 0},     {0, 0, 0},          {0.5f, 0, 0.1f}};  // 2 normal, 2 not
+  level.detail = {{0, 0, 1},       {0.04f, 0, 1},   {0.03f, 0.03f, 1}, {0.06f, 0, -1},    // 3 normal, 1 not
+                  {0.9e-4f, 0, 0}, {0, 1.2e-4f, 0}, {0, 0, 0},         {0.5f, 0, 0.1f}};  // 2 normal, 2 not
   EXPECT_DOUBLE_EQ(NormalDetailShare({level}), 5.0 / 8);
   EXPECT_DOUBLE_EQ(NormalDetailShare({level}, {0.0, 0.0}), 2.0 / 8);
   EXPECT_DOUBLE_EQ(NormalDetailShare({level}, {10.0, 1.0}), 1.0);

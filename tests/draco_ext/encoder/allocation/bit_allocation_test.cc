@@ -43,7 +43,8 @@ std::vector<SetStatistics> TypicalSets(int num_levels) {
     const double share = 0.75 * std::ldexp(1.0, 2 * level) / finest, sigma = 0.03 * std::pow(3.0, 1 - level);
     for (const SetKind kind : {SetKind::kTangential, SetKind::kNormal}) {
       const double parts = kind == SetKind::kTangential ? 2.0 : 1.0;
-      sets.push_back(MakeSet(kind == SetKind::kTangential ? 0.05 * sigma : sigma, kind == SetKind::kTangential ? 0.3 : 0.7,
+      sets.push_back(MakeSet(kind == SetKind::kTangential ? 0.05 * sigma : sigma,
+                             kind == SetKind::kTangential ? 0.3 : 0.7,
                              parts * share * energies[static_cast<size_t>(level)], parts * share / 3));
       sets.back().level = level;
       sets.back().kind = kind;
@@ -114,7 +115,8 @@ TEST(BitAllocationTest, HighRateStepsFollowTheEnergies) {
     const std::vector<double> energies = RegularEnergies(5);
     for (size_t k = 0; k < sets.size(); ++k) {
       if (sets[k].kind == SetKind::kTangential) continue;  // alpha 0.3 gets there later
-      const double expected = allocation.steps.back() * std::pow(energies[static_cast<size_t>(sets[k].level)], -0.5 * exponent);
+      const double expected =
+          allocation.steps.back() * std::pow(energies[static_cast<size_t>(sets[k].level)], -0.5 * exponent);
       EXPECT_NEAR(allocation.steps[k], expected, 0.005 * expected) << "exponent " << exponent << " set " << k;
     }
   }
@@ -170,7 +172,8 @@ TEST(BitAllocationTest, ScalesWithTheModel) {
     std::vector<SetStatistics> scaled = sets;
     for (SetStatistics& set : scaled) set.sigma *= scale;
     const BitAllocation after = Allocate(scaled, 0.7, {1.0, 1.5});
-    EXPECT_NEAR(after.predicted_distortion / (scale * scale), before.predicted_distortion, 1e-6 * before.predicted_distortion);
+    EXPECT_NEAR(after.predicted_distortion / (scale * scale), before.predicted_distortion,
+                1e-6 * before.predicted_distortion);
     for (size_t k = 0; k < sets.size(); ++k) {
       EXPECT_EQ(std::isfinite(after.steps[k]), std::isfinite(before.steps[k]));
       if (std::isfinite(before.steps[k])) {
@@ -182,13 +185,15 @@ TEST(BitAllocationTest, ScalesWithTheModel) {
 
 // The least distortion of two or three sets within the rate, by trying all steps of a fine grid.
 double BruteForce(const std::vector<SetStatistics>& sets, double target) {
-  std::vector<std::vector<std::pair<double, double>>> curves;  // by set: (rate share, distortion) per step, rates falling
+  std::vector<std::vector<std::pair<double, double>>>
+      curves;  // by set: (rate share, distortion) per step, rates falling
   for (const SetStatistics& set : sets) {
     curves.emplace_back();
     for (double q = 1e-3; q < 200; q *= 1.01) {
       const QuantizerPoint point = EvaluateUniformQuantizer(set.alpha, q);
       if (point.rate < 1e-7) break;
-      curves.back().emplace_back(set.sample_fraction * point.rate, set.weight * set.sigma * set.sigma * point.distortion);
+      curves.back().emplace_back(set.sample_fraction * point.rate,
+                                 set.weight * set.sigma * set.sigma * point.distortion);
     }
     curves.back().emplace_back(0.0, set.weight * set.sigma * set.sigma);
   }
@@ -198,7 +203,8 @@ double BruteForce(const std::vector<SetStatistics>& sets, double target) {
     for (const auto& b : curves[2]) {
       const double left = target - a.first - b.first;
       if (left < 0.0) continue;
-      const auto c = std::lower_bound(curves[1].begin(), curves[1].end(), left, [](const auto& point, double rate) { return point.first > rate; });
+      const auto c = std::lower_bound(curves[1].begin(), curves[1].end(), left,
+                                      [](const auto& point, double rate) { return point.first > rate; });
       best = std::min(best, a.second + b.second + c->second);
     }
   }
@@ -232,7 +238,8 @@ TEST(BitAllocationTest, MixtureWithZerosTakesPartInTheSystem) {
       const QuantizerPoint point = EvaluateUniformQuantizer(sets[k].alpha, allocation.steps[k] / sets[k].sigma, 0.02);
       const double lambda = sets[k].weight * sets[k].sigma * sets[k].sigma * point.slope / sets[k].sample_fraction;
       EXPECT_NEAR(lambda, allocation.lambda, 0.005 * allocation.lambda) << "set " << k << " target " << target;
-      EXPECT_LT(allocation.rates[k], 0.02 * 26 + 0.15);  // the entropy of the zero flag and at most 26 bits of each active sample
+      EXPECT_LT(allocation.rates[k],
+                0.02 * 26 + 0.15);  // the entropy of the zero flag and at most 26 bits of each active sample
     }
   }
 }

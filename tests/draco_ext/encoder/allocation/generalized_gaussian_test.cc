@@ -116,11 +116,12 @@ struct Known {
 };
 
 TEST(UniformQuantizerTest, HasKnownValues) {
-  const std::vector<Known> table = {
-      {0.5, 0.5, 0.017246, 2.52385, 0.02333}, {0.5, 1, 0.056562, 1.64716, 0.07712}, {0.5, 2, 0.160406, 0.90083, 0.23355},
-      {0.7, 1, 0.065750, 1.86575, 0.08667},   {1, 0.5, 0.019934, 2.96577, 0.02731}, {1, 1, 0.072297, 2.01421, 0.09613},
-      {1, 2, 0.226579, 1.12699, 0.28082},     {1, 4, 0.563521, 0.38498, 0.71401},   {2, 0.5, 0.020408, 3.06197, 0.02829},
-      {2, 1, 0.076915, 2.10483, 0.10659},     {2, 2, 0.253507, 1.24120, 0.34367}};
+  const std::vector<Known> table = {{0.5, 0.5, 0.017246, 2.52385, 0.02333}, {0.5, 1, 0.056562, 1.64716, 0.07712},
+                                    {0.5, 2, 0.160406, 0.90083, 0.23355},   {0.7, 1, 0.065750, 1.86575, 0.08667},
+                                    {1, 0.5, 0.019934, 2.96577, 0.02731},   {1, 1, 0.072297, 2.01421, 0.09613},
+                                    {1, 2, 0.226579, 1.12699, 0.28082},     {1, 4, 0.563521, 0.38498, 0.71401},
+                                    {2, 0.5, 0.020408, 3.06197, 0.02829},   {2, 1, 0.076915, 2.10483, 0.10659},
+                                    {2, 2, 0.253507, 1.24120, 0.34367}};
   for (const Known& known : table) {
     SCOPED_TRACE(::testing::Message() << "alpha " << known.alpha << " q " << known.q);
     const QuantizerPoint point = EvaluateUniformQuantizer(known.alpha, known.q);
@@ -131,7 +132,8 @@ TEST(UniformQuantizerTest, HasKnownValues) {
 }
 
 TEST(UniformQuantizerTest, LaplacianHasAClosedForm) {
-  // All bins but the zero bin of a Laplacian are geometric: P_m = (1 - r) r^(m-1) s with s = P(x > q / 2), r = exp(-sqrt 2 q).
+  // All bins but the zero bin of a Laplacian are geometric: P_m = (1 - r) r^(m-1) s with s = P(x > q / 2), r =
+  // exp(-sqrt 2 q).
   for (const double q : {0.02, 0.3, 1.0, 3.0, 9.0}) {
     const double c = std::sqrt(2.0), s = 0.5 * std::exp(-c * q / 2), r = std::exp(-c * q), p0 = 1 - 2 * s;
     const double rate = -p0 * std::log2(p0) - 2 * s * (std::log2((1 - r) * s) + std::log2(r) * r / (1 - r));
@@ -143,7 +145,8 @@ TEST(UniformQuantizerTest, SlopeIsTheDerivative) {
   for (const double alpha : {0.2, 0.4, 0.7, 1.0, 2.0, 4.0}) {
     for (double q = 1e-4; q < 5; q *= 3) {
       const double step = 1e-4 * q;
-      const QuantizerPoint below = EvaluateUniformQuantizer(alpha, q - step), above = EvaluateUniformQuantizer(alpha, q + step);
+      const QuantizerPoint below = EvaluateUniformQuantizer(alpha, q - step),
+                           above = EvaluateUniformQuantizer(alpha, q + step);
       const double numeric = -(above.distortion - below.distortion) / (above.rate - below.rate);
       EXPECT_NEAR(EvaluateUniformQuantizer(alpha, q).slope, numeric, 1e-5 * numeric) << alpha << " " << q;
     }
@@ -169,7 +172,8 @@ TEST(UniformQuantizerTest, MixtureWithZerosMatchesDirectSums) {
       EXPECT_NEAR(point.rate, rate, 1e-4 * rate);
       EXPECT_NEAR(point.distortion, 1 - outer_second, 1e-4 * point.distortion);
       const double step = 1e-4 * q;
-      const QuantizerPoint below = EvaluateUniformQuantizer(1.0, q - step, active), above = EvaluateUniformQuantizer(1.0, q + step, active);
+      const QuantizerPoint below = EvaluateUniformQuantizer(1.0, q - step, active),
+                           above = EvaluateUniformQuantizer(1.0, q + step, active);
       EXPECT_NEAR(point.slope, -(above.distortion - below.distortion) / (above.rate - below.rate), 1e-5 * point.slope);
     }
   }
@@ -186,7 +190,8 @@ TEST(UniformQuantizerTest, ApproachesTheHighRateLimit) {
     }
   }
   // Gaussian: R = 1/2 log2(2 pi e) - log2 q.
-  EXPECT_NEAR(EvaluateUniformQuantizer(2.0, 1e-3).rate, 0.5 * std::log2(2 * 3.14159265358979323846 * std::exp(1.0)) - std::log2(1e-3), 1e-5);
+  EXPECT_NEAR(EvaluateUniformQuantizer(2.0, 1e-3).rate,
+              0.5 * std::log2(2 * 3.14159265358979323846 * std::exp(1.0)) - std::log2(1e-3), 1e-5);
 }
 
 }  // namespace
