@@ -29,9 +29,12 @@ void PutVarint(size_t value, Bytes* bytes) {
   bytes->push_back(static_cast<uint8_t>(value));
 }
 
-void PutStep(float step, uint8_t bias, Bytes* bytes) {
-  PutWord16(StepToBits(step), bytes);
-  if (step > 0) bytes->push_back(bias);
+void PutSteps(const LevelSteps& s, Bytes* bytes) {
+  PutWord16(StepToBits(s.normal_step), bytes);
+  PutWord16(StepToBits(s.tangential_step), bytes);
+  const int normal_bias = s.normal_step > 0 ? s.normal_bias : 0;
+  const int tangential_bias = s.tangential_step > 0 ? s.tangential_bias : 0;
+  if (s.normal_step > 0 || s.tangential_step > 0) bytes->push_back(static_cast<uint8_t>(normal_bias | tangential_bias << 4));
 }
 
 Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps) {
@@ -44,10 +47,7 @@ Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps) {
   std::memcpy(&step_bits, &base.step, sizeof(step_bits));
   PutWord32(step_bits, &bytes);
   PutWord32(BaseChecksum(base), &bytes);
-  for (const LevelSteps& s : steps) {
-    PutStep(s.normal_step, s.normal_bias, &bytes);
-    PutStep(s.tangential_step, s.tangential_bias, &bytes);
-  }
+  for (const LevelSteps& s : steps) PutSteps(s, &bytes);
   Crc32 crc;
   crc.Add(bytes);
   PutWord16(crc.low16(), &bytes);

@@ -53,11 +53,9 @@ def read_header(reader, base):
     assert reader.unsigned(4) == base_checksum(base)
     levels = []
     for _ in range(counts & 15):
-        sets = {}
-        for name in ("normal", "tangential"):
-            bits = reader.unsigned(2)
-            sets[name] = (bits, reader.unsigned(1) if bits else 0)
-        levels.append(sets)
+        normal, tangential = reader.unsigned(2), reader.unsigned(2)
+        biases = reader.unsigned(1) if normal or tangential else 0
+        levels.append({"normal": (normal, biases & 15), "tangential": (tangential, biases >> 4)})
     end = reader.at
     assert reader.unsigned(2) == zlib.crc32(reader.data[:end]) & 0xFFFF
     return levels

@@ -27,10 +27,11 @@ Bytes MakeStream(const BaseMesh& base, lacerta::fuzz::FuzzInput* input) {
   std::copy_n(reinterpret_cast<const uint8_t*>(&base.step), sizeof(step_bits), reinterpret_cast<uint8_t*>(&step_bits));
   Put(step_bits, 4, &bytes);
   Put(BaseChecksum(base), 4, &bytes);
-  for (int set = 0; set < 2 * num_levels; ++set) {
-    const uint16_t step = input->Word16();
-    Put(step, 2, &bytes);
-    if (step != 0) Put(input->Byte(), 1, &bytes);
+  for (int level = 1; level <= num_levels; ++level) {
+    const uint16_t normal = input->Word16(), tangential = input->Word16();
+    Put(normal, 2, &bytes);
+    Put(tangential, 2, &bytes);
+    if (normal != 0 || tangential != 0) Put(input->Byte(), 1, &bytes);
   }
   lacerta::Crc32 crc;
   crc.Add(bytes);
