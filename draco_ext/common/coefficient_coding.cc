@@ -56,7 +56,8 @@ std::vector<Forecast> CodedNeighbors::ForecastFiner() const {
   const Topology& t = topology_;
   std::vector<Forecast> parents(t.num_edges());
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
-    // The mean of the edge (weight 4) and the other edges of its faces (weight 1), halved: details shrink with the level.
+    // The mean of the edge (weight 4) and the other edges of its faces (weight 1), halved: details shrink with the
+    // level.
     uint32_t sum = 4 * Magnitude(values_[e]), weight = 4;
     for (const uint32_t face : t.edge_faces[e]) {
       if (face == kNone) continue;

@@ -1,9 +1,10 @@
 // Coding of the two coefficient sets of one level: one piece of code for encoder, decoder and size measurement, so that
-// they cannot drift apart. What is done to a single decision comes from the Coder: RangeEncoder, RangeDecoder, or any other
-// class with Code(BitModel&, bool) and CodeEven(bool).
+// they cannot drift apart. What is done to a single decision comes from the Coder: RangeEncoder, RangeDecoder, or any
+// other class with Code(BitModel&, bool) and CodeEven(bool).
 //
-// Contexts come from integers only: connectivity tables and coefficients coded before. [Lavu, Choi, Baraniuk 2003] estimate
-// a local variance from neighbors and parent in the same spirit; classes and weights are our own (docs/format.md, "Contexts").
+// Contexts come from integers only: connectivity tables and coefficients coded before. [Lavu, Choi, Baraniuk 2003]
+// estimate a local variance from neighbors and parent in the same spirit; classes and weights are our own
+// (docs/format.md, "Contexts").
 #ifndef LACERTA_COMMON_COEFFICIENT_CODING_H_
 #define LACERTA_COMMON_COEFFICIENT_CODING_H_
 
@@ -23,10 +24,12 @@ struct Forecast {
   int32_t sign = 0;        // of the parent coefficient: -1, 0, 1
 };
 
+// Probabilities of coefficients other than zero to begin with, in 1/65536: most tangential ones of a normal mesh are zero.
+inline constexpr uint32_t kNormalNonzero = 32768, kTangentialNonzero = 13107;
+
 // What was coded before the level at hand: models, and forecasts for its edges (empty: nothing was coded one level up).
 struct CodingState {
-  // Most details are zero in the tangential sets of a normal mesh.
-  SetModels normal{1u << 15}, tangential1{13107}, tangential2{13107};
+  SetModels normal{kNormalNonzero}, tangential1{kTangentialNonzero}, tangential2{kTangentialNonzero};
   std::vector<Forecast> normal_forecasts, tangential_forecasts;  // #E each
   LevelSteps coarser_steps;
 };
@@ -39,8 +42,8 @@ class CodedNeighbors {
 
   // Adds a coefficient; magnitudes over 4,096 count as 4,096.
   void Add(uint32_t edge, int32_t value);
-  // Context of `edge`, the next one to be added. forecast: null where nothing is known; its magnitude in 1/16 of the step of
-  // this level.
+  // Context of `edge`, the next one to be added. forecast: null where nothing is known; its magnitude in 1/16 of the
+  // step of this level.
   CoefficientContext ContextOf(uint32_t edge, const Forecast* forecast) const;
   // For every edge of the next finer level (2 #E + 3 #F) what these coefficients (all added) let expect.
   std::vector<Forecast> ForecastFiner() const;
@@ -52,8 +55,8 @@ class CodedNeighbors {
   std::vector<uint32_t> vertex_count_;  // #V, of those edges
 };
 
-// A forecast of the coarser level, its magnitude turned from steps `from` into steps `to`: integers only. Both steps are > 0
-// and as RoundStep returns them.
+// A forecast of the coarser level, its magnitude turned from steps `from` into steps `to`: integers only. Both steps
+// are > 0 and as RoundStep returns them.
 Forecast Rescale(const Forecast& forecast, float from, float to);
 
 enum class CoefficientKind { kNormal, kTangential1, kTangential2 };
@@ -72,7 +75,8 @@ void CodeNormalSet(const Topology& t, float step, CodingState* state, std::vecto
   if (!(step > 0)) return;
   CodedNeighbors neighbors(t);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
-    const Forecast forecast = forecasts.empty() ? Forecast() : Rescale(forecasts[e], state->coarser_steps.normal_step, step);
+    const Forecast forecast =
+        forecasts.empty() ? Forecast() : Rescale(forecasts[e], state->coarser_steps.normal_step, step);
     const CoefficientContext context = neighbors.ContextOf(e, forecasts.empty() ? nullptr : &forecast);
     int32_t& q = (*set)[e];
     choose(CoefficientKind::kNormal, e, state->normal, context, &q);
@@ -82,7 +86,8 @@ void CodeNormalSet(const Topology& t, float step, CodingState* state, std::vecto
   state->normal_forecasts = neighbors.ForecastFiner();
 }
 
-// Codes the tangential set of one level after the normal one. Both coefficients of an edge share one context, the sum of their magnitudes; their signs have none.
+// Codes the tangential set of one level after the normal one; see CodeLevel. For the neighbors an edge counts with the
+// sum of its two magnitudes. Signs have no context.
 template <typename Coder, typename Choose>
 void CodeTangentialSet(const Topology& t, float step, const std::vector<int32_t>& normal, CodingState* state,
                        std::vector<int32_t>* set, Coder* coder, const Choose& choose) {
@@ -110,9 +115,10 @@ void CodeTangentialSet(const Topology& t, float step, const std::vector<int32_t>
   state->tangential_forecasts = neighbors.ForecastFiner();
 }
 
-// Codes one level. t: the level whose edges get new midpoints. quantized: shapes as in QuantizedLevel; an encoding coder
-// leaves the coefficients as they are, a decoding coder writes them (all zero on entry). choose(kind, edge, models, context,
-// &value) is called right before each coefficient is coded and may change it: an encoder sees there what each value costs.
+// Codes one level. t: the level whose edges get new midpoints. quantized: shapes as in QuantizedLevel; an encoding
+// coder leaves the coefficients as they are, a decoding coder writes them (all zero on entry). choose(kind, edge,
+// models, context, &value) is called right before each coefficient is coded and may change it: an encoder sees there
+// what each value costs.
 template <typename Coder, typename Choose = KeepCoefficients>
 void CodeLevel(const Topology& t, const LevelSteps& steps, CodingState* state, QuantizedLevel* quantized, Coder* coder,
                const Choose& choose = {}) {

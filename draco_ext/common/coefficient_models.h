@@ -13,12 +13,13 @@ namespace lacerta {
 inline constexpr int kNumActivityClasses = 14;  // of the expected magnitude
 inline constexpr int kNumCompanionClasses = 3;
 inline constexpr int kNumSignClasses = 8;
-inline constexpr int kUnaryLength = 14;        // magnitudes up to this one are coded in unary
-inline constexpr int kMaxExponent = 19;        // the rest, m - 14, is below 2^20
+inline constexpr int kUnaryLength = 14;  // magnitudes up to this one are coded in unary
+inline constexpr int kMaxExponent = 19;  // the rest, m - 14, is below 2^20
 
 // Class of an expected magnitude given in 1/16: 0 for 0, then growing about logarithmically.
 inline int ActivityClass(uint32_t sixteenths) {
-  constexpr std::array<uint32_t, kNumActivityClasses - 1> kLowerBounds = {1, 3, 5, 8, 12, 17, 24, 36, 56, 90, 150, 260, 500};
+  constexpr std::array<uint32_t, kNumActivityClasses - 1> kLowerBounds = {1,  3,  5,  8,   12,  17, 24,
+                                                                          36, 56, 90, 150, 260, 500};
   int c = 0;
   while (c < kNumActivityClasses - 1 && sixteenths >= kLowerBounds[c]) ++c;
   return c;
@@ -26,9 +27,9 @@ inline int ActivityClass(uint32_t sixteenths) {
 
 // What is known about a coefficient before it is coded.
 struct CoefficientContext {
-  int activity = 0;           // ActivityClass of the expected magnitude
-  int companion = 0;          // what was coded at the same edge before: 0 nothing or zeros .. 2 much
-  int sign_class = 0;         // 0: nothing is known about the sign .. 7: neighbors and parent agree on it
+  int activity = 0;    // ActivityClass of the expected magnitude
+  int companion = 0;   // what was coded at the same edge before: 0 nothing or zeros .. 2 much
+  int sign_class = 0;  // 0: nothing is known about the sign .. 7: neighbors and parent agree on it
   bool expect_negative = false;
 };
 
@@ -42,13 +43,14 @@ struct SetModels {
   std::array<std::array<BitModel, kNumCompanionClasses>, kNumActivityClasses> nonzero;
   std::array<BitModel, kNumSignClasses> unexpected_sign;
   std::array<std::array<BitModel, kUnaryLength>, kNumActivityClasses> larger;  // [m - 1]: the magnitude exceeds m
-  std::array<BitModel, kMaxExponent> longer;         // [k]: the rest has more than k bits below its leading one
-  std::array<BitModel, kMaxExponent> second_bit;     // [k - 1]: of a rest with k bits below its leading one
+  std::array<BitModel, kMaxExponent> longer;      // [k]: the rest has more than k bits below its leading one
+  std::array<BitModel, kMaxExponent> second_bit;  // [k - 1]: of a rest with k bits below its leading one
 };
 
 inline uint32_t Magnitude(int32_t q) { return static_cast<uint32_t>(q < 0 ? -int64_t{q} : int64_t{q}); }
 
-// Codes one coefficient; returns it. Whatever a decoding coder answers, the magnitude stays within kMaxMagnitude. With an encoding coder `value` is what is coded; a decoding coder ignores it.
+// Codes one coefficient; returns it. With an encoding coder `value` is what is coded; a decoding coder ignores it, and
+// whatever it answers, the magnitude stays within kMaxMagnitude.
 template <typename Coder>
 int32_t CodeCoefficient(Coder& coder, SetModels& models, const CoefficientContext& context, int32_t value) {
   if (!coder.Code(models.nonzero[context.activity][context.companion], value != 0)) return 0;

@@ -75,7 +75,8 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   for (const uint8_t expected : kRefinementMagic) {
     const uint8_t byte = cursor.Byte();
     if (cursor.at_end()) return Result();
-    if (byte != expected) return InvalidData("the bytes after the base mesh are not a Lacerta refinement (no \"LAC\" mark)");
+    if (byte != expected)
+      return InvalidData("the bytes after the base mesh are not a Lacerta refinement (no \"LAC\" mark)");
   }
   const int version = cursor.Byte();
   if (cursor.at_end()) return Result();
@@ -88,7 +89,8 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   const int num_levels = levels_and_layers & 0x0f, num_layers = levels_and_layers >> 4;
   if (num_layers != 1) return Unsupported(std::to_string(num_layers) + " quality layers per level; version 1 has one");
   if (num_levels < 1 || num_levels > kMaxLevels) {
-    return InvalidData(std::to_string(num_levels) + " refinement levels; 1 to " + std::to_string(kMaxLevels) + " are legal");
+    return InvalidData(std::to_string(num_levels) + " refinement levels; 1 to " + std::to_string(kMaxLevels) +
+                       " are legal");
   }
   RefinementHeader header;
   header.num_base_vertices = cursor.Varint();
@@ -119,7 +121,8 @@ StatusOr<std::optional<ReadSegment>> ReadRefinementSegment(Span<const uint8_t> b
   Cursor cursor(bytes);
   const uint32_t length = cursor.Varint();
   const uint16_t checksum = cursor.Word16();
-  if (cursor.malformed()) return InvalidData("the length of the segment of level " + std::to_string(level) + " exceeds 32 bits");
+  if (cursor.malformed())
+    return InvalidData("the length of the segment of level " + std::to_string(level) + " exceeds 32 bits");
   if (cursor.at_end() || bytes.size() - cursor.position() < length) return Result();
   const Span<const uint8_t> payload = bytes.Subspan(cursor.position()).First(length);
   if (SegmentChecksum(level, payload) != checksum) {

@@ -1,5 +1,5 @@
-// Speed and size of the stream: a bumpy star-shaped surface as a normal mesh of four levels over 162 base vertices, quantized in
-// a closed loop at a coarse, a middle and a fine step. Items are coefficients, three per edge.
+// Speed and size of the stream: a bumpy star-shaped surface as a normal mesh of four levels over 162 base vertices,
+// quantized in a closed loop at a coarse, a middle and a fine step. Items are coefficients, three per edge.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

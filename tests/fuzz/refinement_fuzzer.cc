@@ -1,5 +1,5 @@
-// The whole refinement decoder on bytes with sound checksums, cut into pieces. Checksums would stop a fuzzer at the door, so
-// header and segments are put together from its bytes: steps, biases, lengths and payloads are its own choice.
+// The whole refinement decoder on bytes with sound checksums, cut into pieces. Checksums would stop a fuzzer at the
+// door, so header and segments are put together from its bytes: steps, biases, lengths and payloads are its own choice.
 #include "common/crc32.h"
 #include "common/stream_layout.h"
 #include "draco_ext/encoder/test_streams.h"

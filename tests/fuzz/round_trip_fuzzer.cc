@@ -1,4 +1,5 @@
-// Coefficients of the fuzzer's choice, written as a stream, decode to what synthesis makes of them; every prefix decodes too.
+// Coefficients of the fuzzer's choice, written as a stream, decode to what synthesis makes of them; every prefix
+// decodes too.
 #include "decoder/synthesis.h"
 #include "draco_ext/encoder/test_streams.h"
 #include "encoder/stream_writer.h"

@@ -1,4 +1,5 @@
-// The parsers of header and segment on arbitrary bytes: first as they are, then with the checksum that they should have.
+// The parsers of header and segment on arbitrary bytes: first as they are, then with the checksum that they should
+// have.
 #include "common/crc32.h"
 #include "common/stream_layout.h"
 #include "decoder/stream_reader.h"

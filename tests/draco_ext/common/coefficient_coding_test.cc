@@ -149,7 +149,8 @@ TEST(ForecastTest, ReachesTheFourChildrenOfAnEdge) {
     EXPECT_EQ(finer[e].sign, -1);
     EXPECT_EQ(finer[e].magnitude, 8u * 40 / 8);
     const bool half = e / 2 == 3;
-    const bool inner = e >= 2 * t.num_edges() && t.face_edges[(e - 2 * t.num_edges()) / 3][(e - 2 * t.num_edges()) % 3] == 3;
+    const bool inner =
+        e >= 2 * t.num_edges() && t.face_edges[(e - 2 * t.num_edges()) / 3][(e - 2 * t.num_edges()) % 3] == 3;
     EXPECT_TRUE(half || inner) << e;
   }
   EXPECT_EQ(children, 4);

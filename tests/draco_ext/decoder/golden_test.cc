@@ -1,6 +1,7 @@
-// Streams of every released version decode to the same mesh for ever: tests/golden/v<version>/*.lac, with base, coefficients
-// and positions beside them as .json, from which tests/format/reference_decoder.py checks docs/format.md too.
-// LACERTA_REGENERATE_GOLDEN=1 writes the files of the current version anew; do that only before the version is released.
+// Streams of every released version decode to the same mesh for ever: tests/golden/v<version>/*.lac, with base,
+// coefficients and positions beside them as .json, from which tests/format/reference_decoder.py checks docs/format.md
+// too. LACERTA_REGENERATE_GOLDEN=1 writes the files of the current version anew; do that only before the version is
+// released.
 #include <gtest/gtest.h>
 
 #include <array>

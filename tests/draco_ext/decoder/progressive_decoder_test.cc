@@ -46,7 +46,8 @@ void FixHeaderChecksum(size_t header_size, Bytes* bytes) {
   (*bytes)[header_size - 1] = static_cast<uint8_t>(crc.low16() >> 8);
 }
 
-// 3 mark, version, levels, two counts of one byte, step, checksum of the base, 2 levels of two steps and a byte, checksum.
+// 3 mark, version, levels, two counts of one byte, step, checksum of the base, 2 levels of two steps and a byte,
+// checksum.
 constexpr size_t kHeaderSizeOfTwoLevels = 3 + 1 + 1 + 1 + 1 + 4 + 4 + 2 * 5 + 2;
 
 TEST(ProgressiveDecoderTest, EveryPrefixDecodesToItsLastCompleteLevel) {
@@ -111,7 +112,8 @@ TEST(ProgressiveDecoderTest, DamagedSegmentKeepsTheLevelsBefore) {
 
 TEST(ProgressiveDecoderTest, SwappedSegmentsAreNoticed) {
   const BaseMesh base = Octahedron();
-  const Coefficients c = RandomCoefficients(base, 3, 1, 0.0);  // all zero: segments that differ in nothing but their level
+  const Coefficients c =
+      RandomCoefficients(base, 3, 1, 0.0);  // all zero: segments that differ in nothing but their level
   const RefinementBytes refinement = WriteRefinement(base, c.steps, c.levels).value();
   Bytes swapped(refinement.bytes.begin(), refinement.bytes.begin() + static_cast<ptrdiff_t>(refinement.part_sizes[0]));
   const auto level2 = refinement.bytes.begin() + static_cast<ptrdiff_t>(refinement.part_sizes[0]);
@@ -183,7 +185,8 @@ TEST(ProgressiveDecoderTest, RefusesStepsOutOfRange) {
   const BaseMesh base = Octahedron();
   const Bytes bytes = SmallStream(base, 2).bytes;
   constexpr size_t kFirstStep = 3 + 1 + 1 + 1 + 1 + 4 + 4;
-  for (const int bits : {0x7f80 /* infinite */, 0x7fc0 /* NaN */, 0xbf80 /* -1 */, 0x0001 /* denormal */, 0x8000 /* -0 */}) {
+  for (const int bits :
+       {0x7f80 /* infinite */, 0x7fc0 /* NaN */, 0xbf80 /* -1 */, 0x0001 /* denormal */, 0x8000 /* -0 */}) {
     Bytes changed = bytes;
     changed[kFirstStep] = static_cast<uint8_t>(bits);
     changed[kFirstStep + 1] = static_cast<uint8_t>(bits >> 8);
@@ -314,8 +317,8 @@ TEST(ProgressiveDecoderTest, RefusesBasesOutOfRange) {
 
 TEST(ProgressiveDecoderTest, TakesBasesThatCannotBeRefined) {
   // Not manifold, but nothing wants to refine it.
-  const BaseMesh base{1.0f, {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{1, 1, 1}}},
-                      {{{0, 1, 2}}, {{0, 1, 3}}, {{0, 1, 4}}}};
+  const BaseMesh base{
+      1.0f, {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{1, 1, 1}}}, {{{0, 1, 2}}, {{0, 1, 3}}, {{0, 1, 4}}}};
   const RefinementResult result = Decode(base, {});
   EXPECT_TRUE(result.refinement.ok());
   EXPECT_EQ(result.level, 0);
@@ -359,7 +362,8 @@ TEST(BaseMeshTest, SurvivesFloatsOfAHost) {
 TEST(BaseMeshTest, RefusesPositionsOffTheLattice) {
   const TriangleMesh mesh = Octahedron().ToMesh();
   EXPECT_TRUE(BaseMeshFromPositions(mesh, 1.0f / 64).ok());
-  EXPECT_EQ(BaseMeshFromPositions(mesh, 1.0f / 50).status().code(), StatusCode::kOk);  // 50 lattice units: fits by chance
+  EXPECT_EQ(BaseMeshFromPositions(mesh, 1.0f / 50).status().code(),
+            StatusCode::kOk);  // 50 lattice units: fits by chance
   EXPECT_EQ(BaseMeshFromPositions(mesh, 1.0f / 63.5f).status().code(), StatusCode::kInvalidData);
   EXPECT_EQ(BaseMeshFromPositions(mesh, 0.0f).status().code(), StatusCode::kInvalidArgument);
   TriangleMesh broken = mesh;

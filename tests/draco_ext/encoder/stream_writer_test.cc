@@ -35,7 +35,8 @@ void ExpectRoundTrip(const BaseMesh& base, const Coefficients& c) {
   ASSERT_TRUE(written.ok()) << written.status().message();
   const RefinementBytes& refinement = written.value();
   EXPECT_EQ(refinement.part_sizes.size(), c.levels.size());
-  EXPECT_EQ(std::accumulate(refinement.part_sizes.begin(), refinement.part_sizes.end(), size_t{0}), refinement.bytes.size());
+  EXPECT_EQ(std::accumulate(refinement.part_sizes.begin(), refinement.part_sizes.end(), size_t{0}),
+            refinement.bytes.size());
   const StatusOr<RefinementResult> decoded = DecodeRefinement(base, refinement.bytes, {});
   ASSERT_TRUE(decoded.ok()) << decoded.status().message();
   EXPECT_TRUE(decoded.value().refinement.ok()) << decoded.value().refinement.message();
@@ -51,7 +52,9 @@ TEST(StreamWriterTest, RoundTripsClosedMeshes) {
 
 TEST(StreamWriterTest, RoundTripsMeshWithBorder) { ExpectRoundTrip(Square(), RandomCoefficients(Square(), 4, 3)); }
 
-TEST(StreamWriterTest, RoundTripsLargeCoefficients) { ExpectRoundTrip(Octahedron(), RandomCoefficients(Octahedron(), 3, 4, 30000)); }
+TEST(StreamWriterTest, RoundTripsLargeCoefficients) {
+  ExpectRoundTrip(Octahedron(), RandomCoefficients(Octahedron(), 3, 4, 30000));
+}
 
 TEST(StreamWriterTest, NoLevelNoByte) {
   const RefinementBytes refinement = WriteRefinement(Octahedron(), {}, {}).value();
@@ -60,7 +63,8 @@ TEST(StreamWriterTest, NoLevelNoByte) {
 }
 
 TEST(StreamWriterTest, FixedOverheadIsSmall) {
-  // Five levels on 200 vertices: 44 bytes of header, 5 times length (1) and checksum (2), and zeros, which cost a few bits.
+  // Five levels on 200 vertices: 44 bytes of header, 5 times length (1) and checksum (2), and zeros, which cost a few
+  // bits.
   const BaseMesh base = Torus(10, 20);
   Coefficients c = RandomCoefficients(base, 5, 1, 0.0);
   c.steps[1].tangential_step = c.steps[0].tangential_step;
@@ -74,7 +78,9 @@ TEST(StreamWriterTest, FixedOverheadIsSmall) {
 TEST(StreamWriterTest, RefusesWhatAStreamCannotHold) {
   const BaseMesh base = Octahedron();
   const Coefficients good = RandomCoefficients(base, 2, 5);
-  const auto refusal = [&](const Coefficients& c) { return WriteRefinement(base, c.steps, c.levels).status().message(); };
+  const auto refusal = [&](const Coefficients& c) {
+    return WriteRefinement(base, c.steps, c.levels).status().message();
+  };
   ASSERT_EQ(refusal(good), "");
 
   Coefficients c = good;
