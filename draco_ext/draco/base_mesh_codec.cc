@@ -84,20 +84,32 @@ Status Try(const IntegerMesh& base, Attempt attempt, Attempt* best) {
   return {};
 }
 
-// Every setting from the first triangle, then other starting triangles with the best setting. A larger base gets fewer of
-// them: there the start matters less and time more.
+// Every setting from the first triangle, then other starting triangles with the best setting: these gain about 0.5 %. A
+// larger base gets fewer of them, since there the start matters less and time more.
 StatusOr<Attempt> FindSmallest(const IntegerMesh& base) {
   using Connectivity = StockSettings::Connectivity;
   using Prediction = StockSettings::Prediction;
   Attempt best;
   for (const Connectivity connectivity : {Connectivity::kEdgebreaker, Connectivity::kEdgebreakerValence}) {
     for (const Prediction prediction : {Prediction::kParallelogram, Prediction::kConstrainedMultiParallelogram}) {
-      for (const int speed : {0, 1, 3, 5, 7}) {
+      for (const int speed : {0, 1, 5}) {
         Attempt attempt;
         attempt.settings = {connectivity, prediction, speed};
         LACERTA_RETURN_IF_ERROR(Try(base, std::move(attempt), &best));
       }
     }
+  }
+  constexpr size_t kMaxStarts = 32;
+  constexpr size_t kTriangleBudget = 1u << 15;
+  const size_t num_triangles = base.mesh.triangles.size();
+  const size_t num_starts = std::min(kMaxStarts, kTriangleBudget / num_triangles);
+  const StockSettings settings = best.settings;
+  for (size_t i = 1; i < num_starts; ++i) {
+    Attempt attempt;
+    attempt.settings = settings;
+    attempt.first = static_cast<uint32_t>(i * num_triangles / num_starts);
+    attempt.corner = static_cast<uint32_t>(i % 3);
+    LACERTA_RETURN_IF_ERROR(Try(base, std::move(attempt), &best));
   }
   return best;
 }
