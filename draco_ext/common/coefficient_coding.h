@@ -49,10 +49,19 @@ uint32_t RescaleForecast(uint32_t forecast, float from, float to);
 // What the magnitudes of one level (#E) let expect at each edge of the next finer level (2 #E + 3 #F), in 1/16.
 std::vector<uint32_t> ForecastFiner(const Topology& t, const std::vector<uint32_t>& magnitudes);
 
+enum class CoefficientKind { kNormal, kTangential1, kTangential2 };
+
+// Leaves every coefficient as it is.
+struct KeepCoefficients {
+  void operator()(CoefficientKind, uint32_t, SetModels&, const CoefficientContext&, int32_t*) const {}
+};
+
 // Codes one level. t: the level whose edges get new midpoints. quantized: shapes as in QuantizedLevel; an encoding coder
-// leaves the coefficients as they are, a decoding coder writes them (all zero on entry).
-template <typename Coder>
-void CodeLevel(const Topology& t, const LevelSteps& steps, CodingState* state, QuantizedLevel* quantized, Coder* coder) {
+// leaves the coefficients as they are, a decoding coder writes them (all zero on entry). choose(kind, edge, models, context,
+// &value) is called right before each coefficient is coded and may change it: an encoder sees there what each value costs.
+template <typename Coder, typename Choose = KeepCoefficients>
+void CodeLevel(const Topology& t, const LevelSteps& steps, CodingState* state, QuantizedLevel* quantized, Coder* coder,
+               const Choose& choose = {}) {
   const uint32_t num_edges = t.num_edges();
   const auto forecast_at = [](const std::vector<uint32_t>& forecast, uint32_t edge, float from, float to) {
     return forecast.empty() ? 0 : RescaleForecast(forecast[edge], from, to);
@@ -64,7 +73,9 @@ void CodeLevel(const Topology& t, const LevelSteps& steps, CodingState* state, Q
       const uint32_t forecast =
           forecast_at(state->normal_forecast, e, state->coarser_steps.normal_step, steps.normal_step);
       int32_t& q = quantized->normal[e];
-      q = CodeCoefficient(*coder, state->normal, normal_sums.Context(e, forecast, !state->normal_forecast.empty()), q);
+      const CoefficientContext context = normal_sums.Context(e, forecast, !state->normal_forecast.empty());
+      choose(CoefficientKind::kNormal, e, state->normal, context, &q);
+      q = CodeCoefficient(*coder, state->normal, context, q);
       normal_sums.Add(e, Magnitude(q));
     }
     normal_forecast = ForecastFiner(t, normal_sums.magnitudes());
@@ -79,9 +90,11 @@ void CodeLevel(const Topology& t, const LevelSteps& steps, CodingState* state, Q
       context.companion = normal == 0 ? 0 : normal < 3 ? 1 : 2;
       int32_t& q1 = quantized->tangential[size_t{2} * e];
       int32_t& q2 = quantized->tangential[size_t{2} * e + 1];
+      choose(CoefficientKind::kTangential1, e, state->tangential1, context, &q1);
       q1 = CodeCoefficient(*coder, state->tangential1, context, q1);
       const uint32_t m1 = Magnitude(q1);
       context.companion = m1 == 0 ? (normal == 0 ? 0 : 1) : 2;
+      choose(CoefficientKind::kTangential2, e, state->tangential2, context, &q2);
       q2 = CodeCoefficient(*coder, state->tangential2, context, q2);
       sums.Add(e, m1 + Magnitude(q2));
     }

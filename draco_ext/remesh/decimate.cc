@@ -28,7 +28,6 @@ struct Candidate {
 struct HeapEntry {
   double cost;
   uint32_t vertex;
-  uint32_t stamp;
   bool operator<(const HeapEntry& b) const { return cost > b.cost || (cost == b.cost && vertex > b.vertex); }
 };
 
@@ -49,9 +48,7 @@ class Decimator {
   std::vector<Vec3d> positions_;
   std::vector<Quadric> quadrics_;
   std::vector<std::vector<uint32_t>> vertex_faces_;
-  std::vector<uint32_t> stamp_;   // raised whenever the surroundings of a vertex change
-  std::vector<uint8_t> stale_;    // its queued cost is out of date
-  std::vector<uint8_t> blocked_;  // no collapse of it was sound when last looked at
+  std::vector<uint8_t> blocked_;  // no collapse of the vertex was sound when last looked at
   std::priority_queue<HeapEntry> heap_;
   CollapseHistory history_;
   double length_scale_;           // of the mean input edge, squared
@@ -61,8 +58,6 @@ Decimator::Decimator(const TriangleMesh& mesh, const DecimateOptions& options)
     : options_(options),
       quadrics_(mesh.positions.size()),
       vertex_faces_(mesh.positions.size()),
-      stamp_(mesh.positions.size(), 0),
-      stale_(mesh.positions.size(), 0),
       blocked_(mesh.positions.size(), 0),
       history_(mesh) {
   // Centered and scaled to unit size: quadrics lose their digits far from the origin.
@@ -198,10 +193,8 @@ Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
 
 void Decimator::Push(uint32_t v) {
   const Candidate candidate = BestCandidate(v, FanOf(v));
-  stale_[v] = 0;
   blocked_[v] = candidate.kept < 0;
-  ++stamp_[v];
-  if (!blocked_[v]) heap_.push({candidate.cost, v, stamp_[v]});
+  if (!blocked_[v]) heap_.push({candidate.cost, v});
 }
 
 void Decimator::Collapse(uint32_t v, const Fan& fan, int kept) {
@@ -220,6 +213,8 @@ void Decimator::Collapse(uint32_t v, const Fan& fan, int kept) {
   vertex_faces_[v] = {};
 }
 
+// Every vertex that is not blocked stands in the heap once. Its cost there may be out of date: it is computed anew when it
+// comes up, and goes back if it has risen meanwhile.
 CollapseHistory Decimator::Run() {
   uint32_t remaining = static_cast<uint32_t>(positions_.size());
   for (uint32_t v = 0; v < remaining; ++v) Push(v);
@@ -227,20 +222,17 @@ CollapseHistory Decimator::Run() {
     const HeapEntry entry = heap_.top();
     heap_.pop();
     const uint32_t v = entry.vertex;
-    if (entry.stamp != stamp_[v] || vertex_faces_[v].empty()) continue;
-    if (stale_[v]) {
-      Push(v);
-      continue;
-    }
     const Fan fan = FanOf(v);
     const Candidate candidate = BestCandidate(v, fan);
-    Collapse(v, fan, candidate.kept);
-    --remaining;
-    for (const uint32_t w : fan.ring) {
-      if (blocked_[w]) {
-        Push(w);
-      } else {
-        stale_[w] = 1;
+    if (candidate.kept < 0) {
+      blocked_[v] = 1;
+    } else if (candidate.cost > entry.cost) {
+      heap_.push({candidate.cost, v});
+    } else {
+      Collapse(v, fan, candidate.kept);
+      --remaining;
+      for (const uint32_t w : fan.ring) {
+        if (blocked_[w]) Push(w);
       }
     }
   }

@@ -163,6 +163,9 @@ NormalMesh Pierce(const InputSurface& surface, const BaseDomain& domain, const s
   result.mesh.base_triangles = domain.triangles();
   result.mesh.num_base_vertices = domain.num_vertices();
   result.mesh.num_levels = options.num_levels;
+  for (uint32_t v = 0; v < domain.num_vertices(); ++v) {
+    result.base_points.push_back(surface.mesh().positions[domain.input_vertex(v)]);
+  }
   std::vector<Vec3f>& positions = result.mesh.positions;
   positions = base_positions;
 
