@@ -201,7 +201,11 @@ StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
                        std::to_string(base.lattice.size()) + " and " + std::to_string(base.triangles.size()) +
                        "; keep more vertices in the base");
   }
-  LACERTA_ASSIGN_OR_RETURN(result.mesh, BaseMeshFromPositions(decoded.mesh, base.step));
+  StatusOr<BaseMesh> lattice = BaseMeshFromPositions(decoded.mesh, base.step);
+  if (!lattice.ok()) {
+    return InvalidData("base lattice is too far from the origin for floats of its step; choose the step with ShortStep or a larger one");
+  }
+  result.mesh = std::move(lattice).value();
   LACERTA_ASSIGN_OR_RETURN(result.vertex_map, FindVertexMap(integers, attempt, result.mesh.triangles));
   if (!IsRenumbering(base, result.mesh, result.vertex_map)) {
     return InvalidData("Draco changed the base mesh; keep more vertices in it");
