@@ -1,5 +1,8 @@
 #include "draco/base_mesh_codec.h"
 
+#include <draco/attributes/geometry_attribute.h>
+#include <draco/attributes/point_attribute.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,9 +10,6 @@
 #include <memory>
 #include <string>
 #include <utility>
-
-#include <draco/attributes/geometry_attribute.h>
-#include <draco/attributes/point_attribute.h>
 
 #include "common/stream_layout.h"
 #include "common/subdivision.h"
@@ -54,8 +54,8 @@ StatusOr<IntegerMesh> ToIntegerMesh(const BaseMesh& base) {
   while (extent >> result.bits != 0) ++result.bits;
   if (result.bits > 24) return InvalidData("base lattice spans more than 24 bits; choose a larger step");
   for (const std::array<int32_t, 3>& p : base.lattice) {
-    result.mesh.positions.push_back({static_cast<float>(p[0] - low[0]), static_cast<float>(p[1] - low[1]),
-                                     static_cast<float>(p[2] - low[2])});
+    result.mesh.positions.push_back(
+        {static_cast<float>(p[0] - low[0]), static_cast<float>(p[1] - low[1]), static_cast<float>(p[2] - low[2])});
   }
   result.mesh.triangles = base.triangles;
   return result;
@@ -126,9 +126,9 @@ float RangeForStep(float step, int bits) {
   return range;
 }
 
-// The input vertex behind each vertex of `coded`, the decoded triangles of the stream. Draco does not tell, so the same mesh
-// is coded once more with the vertex number as a second attribute: that may change the order of the vertices but not the
-// one of triangles and corners. (IsRenumbering makes sure of it.)
+// The input vertex behind each vertex of `coded`, the decoded triangles of the stream. Draco does not tell, so the same
+// mesh is coded once more with the vertex number as a second attribute: that may change the order of the vertices but
+// not the one of triangles and corners. (IsRenumbering makes sure of it.)
 StatusOr<std::vector<uint32_t>> FindVertexMap(const IntegerMesh& base, const Attempt& attempt,
                                               const std::vector<Triangle>& coded) {
   const auto mesh = ToDracoMesh(StartingAt(base.mesh, attempt.first, attempt.corner));
@@ -203,7 +203,9 @@ StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
   }
   StatusOr<BaseMesh> lattice = BaseMeshFromPositions(decoded.mesh, base.step);
   if (!lattice.ok()) {
-    return InvalidData("base lattice is too far from the origin for floats of its step; choose the step with ShortStep or a larger one");
+    return InvalidData(
+        "base lattice is too far from the origin for floats of its step; choose the step with ShortStep or a larger "
+        "one");
   }
   result.mesh = std::move(lattice).value();
   LACERTA_ASSIGN_OR_RETURN(result.vertex_map, FindVertexMap(integers, attempt, result.mesh.triangles));

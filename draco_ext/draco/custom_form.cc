@@ -1,16 +1,16 @@
 #include "draco/custom_form.h"
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <string>
-
 #include <draco/compression/config/compression_shared.h>
 #include <draco/compression/point_cloud/point_cloud_decoder.h>
 #include <draco/core/decoder_buffer.h>
 #include <draco/core/encoder_buffer.h>
 #include <draco/core/varint_decoding.h>
 #include <draco/core/varint_encoding.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
 
 #include "draco/mesh_conversion.h"
 #include "draco/stock_stream.h"

@@ -1,14 +1,14 @@
 #include "draco/mesh_conversion.h"
 
+#include <draco/attributes/geometry_attribute.h>
+#include <draco/attributes/point_attribute.h>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
-
-#include <draco/attributes/geometry_attribute.h>
-#include <draco/attributes/point_attribute.h>
 
 namespace lacerta {
 namespace {
@@ -80,7 +80,8 @@ StatusOr<TriangleMesh> FromDracoMesh(const draco::Mesh& mesh) {
       return InvalidData("position of vertex " + std::to_string(v) + " is missing in the Draco mesh");
     }
     result.positions[v] = {p[0], p[1], p[2]};
-    if (!IsFinite(result.positions[v])) return InvalidData("position of vertex " + std::to_string(v) + " is not finite");
+    if (!IsFinite(result.positions[v]))
+      return InvalidData("position of vertex " + std::to_string(v) + " is not finite");
   }
   result.triangles.resize(mesh.num_faces());
   for (uint32_t f = 0; f < mesh.num_faces(); ++f) {

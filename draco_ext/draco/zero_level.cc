@@ -63,7 +63,8 @@ std::vector<Corners> SortedTriangles(const TriangleMesh& mesh) {
       corners[k] = {p.x, p.y, p.z};
     }
     const Corners start = corners;
-    for (size_t k = 1; k < 3; ++k) corners = std::min(corners, Corners{start[k], start[(k + 1) % 3], start[(k + 2) % 3]});
+    for (size_t k = 1; k < 3; ++k)
+      corners = std::min(corners, Corners{start[k], start[(k + 1) % 3], start[(k + 2) % 3]});
     result.push_back(corners);
   }
   std::sort(result.begin(), result.end());
@@ -74,8 +75,9 @@ std::vector<Corners> SortedTriangles(const TriangleMesh& mesh) {
 Bytes SmallestEdgebreaker(const draco::Mesh& mesh, int bits) {
   using Connectivity = StockSettings::Connectivity;
   using Prediction = StockSettings::Prediction;
-  std::vector<StockSettings> candidates = {{Connectivity::kEdgebreakerValence, Prediction::kParallelogram, 0},
-                                           {Connectivity::kEdgebreakerValence, Prediction::kConstrainedMultiParallelogram, 0}};
+  std::vector<StockSettings> candidates = {
+      {Connectivity::kEdgebreakerValence, Prediction::kParallelogram, 0},
+      {Connectivity::kEdgebreakerValence, Prediction::kConstrainedMultiParallelogram, 0}};
   if (mesh.num_faces() < kManyTriangles) {
     candidates.push_back({Connectivity::kEdgebreaker, Prediction::kParallelogram, 0});
     candidates.push_back({Connectivity::kEdgebreaker, Prediction::kConstrainedMultiParallelogram, 0});
@@ -83,7 +85,8 @@ Bytes SmallestEdgebreaker(const draco::Mesh& mesh, int bits) {
   Bytes smallest;
   for (const StockSettings& settings : candidates) {
     StatusOr<Bytes> stream = EncodeIntegerPositions(mesh, bits, settings);
-    if (stream.ok() && (smallest.empty() || stream.value().size() < smallest.size())) smallest = std::move(stream).value();
+    if (stream.ok() && (smallest.empty() || stream.value().size() < smallest.size()))
+      smallest = std::move(stream).value();
   }
   return smallest;
 }
@@ -97,7 +100,8 @@ bool HoldsTriangles(const Bytes& stream, const std::vector<Corners>& triangles) 
 }  // namespace
 
 StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits) {
-  if (bits < 1 || bits > 24) return InvalidArgument(std::to_string(bits) + " bits per coordinate; 1 to 24 are possible");
+  if (bits < 1 || bits > 24)
+    return InvalidArgument(std::to_string(bits) + " bits per coordinate; 1 to 24 are possible");
   LACERTA_RETURN_IF_ERROR(CheckEncodable(mesh));
   LACERTA_ASSIGN_OR_RETURN(const GridMesh quantized, Quantize(mesh, bits));
   const auto draco_mesh = ToDracoMesh(quantized.mesh);
@@ -107,7 +111,8 @@ StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits) {
   result.stream = SmallestEdgebreaker(*draco_mesh, bits);
   result.sequential = !HoldsTriangles(result.stream, triangles);
   if (result.sequential) {
-    const StockSettings settings = {StockSettings::Connectivity::kSequential, StockSettings::Prediction::kDifference, 0};
+    const StockSettings settings = {StockSettings::Connectivity::kSequential, StockSettings::Prediction::kDifference,
+                                    0};
     LACERTA_ASSIGN_OR_RETURN(result.stream, EncodeIntegerPositions(*draco_mesh, bits, settings));
     if (!HoldsTriangles(result.stream, triangles)) return InternalError("Draco did not keep the triangles of the mesh");
   }

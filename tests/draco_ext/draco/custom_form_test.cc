@@ -36,7 +36,8 @@ TEST(CustomFormTest, SplitsWhatItWrote) {
       const StatusOr<StreamParts> parts = SplitCustomForm(stream);
       ASSERT_TRUE(parts.ok()) << parts.status().message();
       EXPECT_THAT(Bytes(parts.value().base.begin(), parts.value().base.end()), ElementsAreArray(base));
-      EXPECT_THAT(Bytes(parts.value().refinement.begin(), parts.value().refinement.end()), ElementsAreArray(refinement));
+      EXPECT_THAT(Bytes(parts.value().refinement.begin(), parts.value().refinement.end()),
+                  ElementsAreArray(refinement));
     }
   }
 }
@@ -60,7 +61,8 @@ TEST(CustomFormTest, RefusesUnknownVersionByName) {
 
 TEST(CustomFormTest, RefusesLengthsThatDoNotFit) {
   // 2^63 and more, and a varint without end.
-  Bytes stream = {'D', 'R', 'A', 'C', 'O', 2, 2, 1, 'L', 0, 0, 1, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x01};
+  Bytes stream = {'D', 'R',  'A',  'C',  'O',  2,    2,    1,    'L',  0,    0,
+                  1,   0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x01};
   EXPECT_EQ(SplitCustomForm(stream).status().code(), StatusCode::kInvalidData);
   stream.insert(stream.end(), 1000, uint8_t{0xff});
   EXPECT_EQ(SplitCustomForm(stream).status().code(), StatusCode::kInvalidData);

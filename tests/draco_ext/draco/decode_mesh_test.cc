@@ -152,7 +152,8 @@ TEST(DecodeMeshTest, RefusesWhatIsNoMeshStream) {
 
 TEST(DecodeMeshTest, RefusesCountsThatTheBytesCannotHold) {
   // Header, traversal, 2^28 vertices and 2^28 triangles as varints: Draco would take gigabytes for them.
-  const Bytes bomb = {'D', 'R', 'A', 'C', 'O', 2, 2, 1, 1, 0, 0, 0, 0x80, 0x80, 0x80, 0x80, 1, 0x80, 0x80, 0x80, 0x80, 1, 0, 0};
+  const Bytes bomb = {'D',  'R',  'A',  'C',  'O', 2,    2,    1,    1,    0, 0, 0,
+                      0x80, 0x80, 0x80, 0x80, 1,   0x80, 0x80, 0x80, 0x80, 1, 0, 0};
   DecodeOptions options;
   options.limits.max_vertices = options.limits.max_triangles = uint64_t{1} << 40;
   const Status status = DecodeMesh(bomb, options).status();
