@@ -14,6 +14,7 @@
 #include "common/stream_layout.h"
 #include "common/subdivision.h"
 #include "draco/mesh_conversion.h"
+#include "draco/smallest_stream.h"
 #include "draco/stock_stream.h"
 
 namespace lacerta {
@@ -61,60 +62,6 @@ StatusOr<IntegerMesh> ToIntegerMesh(const BaseMesh& base) {
   return result;
 }
 
-// Puts corner `corner` of triangle `first` at the front of the triangle list: edgebreaker starts there.
-TriangleMesh StartingAt(const TriangleMesh& mesh, uint32_t first, uint32_t corner) {
-  TriangleMesh result = mesh;
-  std::rotate(result.triangles.begin(), result.triangles.begin() + first, result.triangles.end());
-  Triangle& front = result.triangles.front();
-  std::rotate(front.begin(), front.begin() + corner, front.end());
-  return result;
-}
-
-// A way to code a base, and what came out of it.
-struct Attempt {
-  StockSettings settings;
-  uint32_t first = 0;
-  uint32_t corner = 0;
-  Bytes stream;
-};
-
-Status Try(const IntegerMesh& base, Attempt attempt, Attempt* best) {
-  const auto mesh = ToDracoMesh(StartingAt(base.mesh, attempt.first, attempt.corner));
-  LACERTA_ASSIGN_OR_RETURN(attempt.stream, EncodeIntegerPositions(*mesh, base.bits, attempt.settings));
-  if (best->stream.empty() || attempt.stream.size() < best->stream.size()) *best = std::move(attempt);
-  return {};
-}
-
-// Every setting from the first triangle, then other starting triangles with the best setting: these gain about 0.5 %. A
-// larger base gets fewer of them, since there the start matters less and time more.
-StatusOr<Attempt> FindSmallest(const IntegerMesh& base) {
-  using Connectivity = StockSettings::Connectivity;
-  using Prediction = StockSettings::Prediction;
-  Attempt best;
-  for (const Connectivity connectivity : {Connectivity::kEdgebreaker, Connectivity::kEdgebreakerValence}) {
-    for (const Prediction prediction : {Prediction::kParallelogram, Prediction::kConstrainedMultiParallelogram}) {
-      for (const int speed : {0, 1, 5}) {
-        Attempt attempt;
-        attempt.settings = {connectivity, prediction, speed};
-        LACERTA_RETURN_IF_ERROR(Try(base, std::move(attempt), &best));
-      }
-    }
-  }
-  constexpr size_t kMaxStarts = 32;
-  constexpr size_t kTriangleBudget = 1u << 15;
-  const size_t num_triangles = base.mesh.triangles.size();
-  const size_t num_starts = std::min(kMaxStarts, kTriangleBudget / num_triangles);
-  const StockSettings settings = best.settings;
-  for (size_t i = 1; i < num_starts; ++i) {
-    Attempt attempt;
-    attempt.settings = settings;
-    attempt.first = static_cast<uint32_t>(i * num_triangles / num_starts);
-    attempt.corner = static_cast<uint32_t>(i % 3);
-    LACERTA_RETURN_IF_ERROR(Try(base, std::move(attempt), &best));
-  }
-  return best;
-}
-
 // The decoder's step is range / (2^bits - 1), rounded to float: the range that makes it `step` exactly.
 float RangeForStep(float step, int bits) {
   const auto divisor = static_cast<float>((1 << bits) - 1);
@@ -129,9 +76,9 @@ float RangeForStep(float step, int bits) {
 // The input vertex behind each vertex of `coded`, the decoded triangles of the stream. Draco does not tell, so the same
 // mesh is coded once more with the vertex number as a second attribute: that may change the order of the vertices but
 // not the one of triangles and corners. (IsRenumbering makes sure of it.)
-StatusOr<std::vector<uint32_t>> FindVertexMap(const IntegerMesh& base, const Attempt& attempt,
+StatusOr<std::vector<uint32_t>> FindVertexMap(const IntegerMesh& base, const StockAttempt& attempt,
                                               const std::vector<Triangle>& coded) {
-  const auto mesh = ToDracoMesh(StartingAt(base.mesh, attempt.first, attempt.corner));
+  const auto mesh = ToDracoMesh(StartingAsIn(attempt, base.mesh));
   const auto num_vertices = static_cast<uint32_t>(base.mesh.positions.size());
   draco::GeometryAttribute description;
   description.Init(draco::GeometryAttribute::GENERIC, nullptr, 1, draco::DT_UINT32, false, sizeof(uint32_t), 0);
@@ -185,7 +132,7 @@ float ShortStep(float step) {
 
 StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
   LACERTA_ASSIGN_OR_RETURN(const IntegerMesh integers, ToIntegerMesh(base));
-  LACERTA_ASSIGN_OR_RETURN(Attempt attempt, FindSmallest(integers));
+  LACERTA_ASSIGN_OR_RETURN(StockAttempt attempt, SmallestEdgebreakerStream(integers.mesh, integers.bits));
   QuantizationGrid grid;
   for (int c = 0; c < 3; ++c) grid.origin[c] = base.step * static_cast<float>(integers.origin[static_cast<size_t>(c)]);
   grid.range = RangeForStep(base.step, integers.bits);

@@ -119,8 +119,9 @@ StatusOr<TriangleMesh> FromDracoMesh(const draco::Mesh& mesh) {
       return InvalidData("position of vertex " + std::to_string(v) + " is missing in the Draco mesh");
     }
     result.positions[v] = read(*positions, value);
-    if (!IsFinite(result.positions[v]))
+    if (!IsFinite(result.positions[v])) {
       return InvalidData("position of vertex " + std::to_string(v) + " is not finite");
+    }
   }
   result.triangles.resize(mesh.num_faces());
   for (uint32_t f = 0; f < mesh.num_faces(); ++f) {

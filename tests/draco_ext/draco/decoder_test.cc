@@ -77,8 +77,9 @@ TEST(DecoderTest, KeepsAttributesOfStockStreams) {
   draco::GeometryAttribute description;
   description.Init(draco::GeometryAttribute::COLOR, nullptr, 1, draco::DT_UINT8, false, 1, 0);
   const int color = mesh->AddAttribute(description, true, mesh->num_points());
-  for (uint8_t v = 0; v < mesh->num_points(); ++v)
+  for (uint8_t v = 0; v < mesh->num_points(); ++v) {
     mesh->attribute(color)->SetAttributeValue(draco::AttributeValueIndex(v), &v);
+  }
   draco::Encoder stock;
   draco::EncoderBuffer encoded;
   ASSERT_TRUE(stock.EncodeMeshToBuffer(*mesh, &encoded).ok());
