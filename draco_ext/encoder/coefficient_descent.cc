@@ -45,13 +45,20 @@ class Reach {
   uint32_t first_midpoint_;
 };
 
+// Sliding along the surface costs this share of what leaving it costs: little enough to be free, but vertices do not drift.
+constexpr float kSlideCost = 0.02f;
+
+// The metric of SurfaceTarget at a vertex with normal n, applied to an offset.
+Vec3f Weigh(const Vec3f& offset, const Vec3f& n) {
+  return offset * kSlideCost + n * ((1 - kSlideCost) * Dot(offset, n));
+}
+
 // Half the gradient of the distortion with respect to the positions of the finest level, brought down to `level`.
 std::vector<Vec3f> GradientAt(const SurfaceTarget& target, const std::vector<Vec3f>& positions, int level) {
   const std::vector<float>& mass = target.masses.back();
   std::vector<Vec3f> gradient(positions.size());
   for (size_t v = 0; v < positions.size(); ++v) {
-    const Vec3f& n = target.normals[v];
-    gradient[v] = n * (mass[v] * Dot(positions[v] - target.points[v], n));
+    gradient[v] = Weigh(positions[v] - target.points[v], target.normals[v]) * mass[v];
   }
   for (int l = target.num_levels() - 1; l >= level; --l) {
     const uint32_t num_vertices = target.topologies[l].num_vertices;
@@ -86,17 +93,15 @@ class LocalModel {
   Parabola Along(uint32_t v, const Vec3f& direction) const {
     Parabola p;
     reach_.Visit(v, [&](uint32_t u, float weight) {
-      const float along_normal = weight * Dot(direction, target_.normals[u]);
       p.slope += weight * Dot(gradient_[u], direction);
-      p.curvature += masses_[u] * along_normal * along_normal;
+      p.curvature += weight * weight * masses_[u] * Dot(direction, Weigh(direction, target_.normals[u]));
     });
     return p;
   }
 
   void Move(uint32_t v, const Vec3f& displacement) {
     reach_.Visit(v, [&](uint32_t u, float weight) {
-      const Vec3f& n = target_.normals[u];
-      gradient_[u] += n * (masses_[u] * weight * Dot(displacement, n));
+      gradient_[u] += Weigh(displacement, target_.normals[u]) * (masses_[u] * weight);
     });
   }
 

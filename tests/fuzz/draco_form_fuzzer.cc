@@ -1,5 +1,5 @@
 // Any bytes as a stream of either form: decoded or refused, within the limits, and what is decoded is sound. Seeds are
-// in corpus/draco_form. Most of the time goes to stock Draco's own decoder, which reads the base.
+// in seeds/draco_form_fuzzer. Most of the time goes to stock Draco's own decoder, which reads the base.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
