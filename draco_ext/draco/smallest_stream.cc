@@ -10,7 +10,8 @@
 namespace lacerta {
 namespace {
 
-// Above so many triangles valence coding won on every mesh tried, and the size of the entropy tables made no difference.
+// Above so many triangles valence coding won on every mesh tried, and the size of the entropy tables made no
+// difference.
 constexpr size_t kManyTriangles = 20000;
 
 std::vector<StockSettings> SettingsToTry(size_t num_triangles) {

@@ -3,24 +3,20 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 
+#include "fuzz/fuzz_input.h"
 #include "lacerta/codec.h"
 #include "lacerta/draco.h"
 
 namespace {
 
-void Require(bool condition) {
-  if (!condition) std::abort();
-}
-
 void CheckMesh(const lacerta::TriangleMesh& mesh, const lacerta::DecodeLimits& limits) {
-  Require(mesh.triangles.size() <= limits.max_triangles);
+  FUZZ_CHECK(mesh.triangles.size() <= limits.max_triangles);
   for (const lacerta::Triangle& t : mesh.triangles) {
-    for (const uint32_t v : t) Require(v < mesh.positions.size());
+    for (const uint32_t v : t) FUZZ_CHECK(v < mesh.positions.size());
   }
   for (const lacerta::Vec3f& p : mesh.positions) {
-    Require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+    FUZZ_CHECK(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
   }
 }
 
@@ -36,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   buffer.Init(reinterpret_cast<const char*>(data), size);
   lacerta::Decoder decoder(options);
   const auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
-  Require(mesh.ok() == decoded.ok());
-  if (mesh.ok()) Require(decoder.level() == decoded.value().level);
+  FUZZ_CHECK(mesh.ok() == decoded.ok());
+  if (mesh.ok()) FUZZ_CHECK(decoder.level() == decoded.value().level);
   return 0;
 }

@@ -2,6 +2,7 @@
 #ifndef LACERTA_TESTS_DRACO_EXT_DRACO_TEST_PROGRESSIVE_STREAMS_H_
 #define LACERTA_TESTS_DRACO_EXT_DRACO_TEST_PROGRESSIVE_STREAMS_H_
 
+#include <utility>
 #include <vector>
 
 #include "draco/base_mesh_codec.h"
@@ -24,11 +25,22 @@ struct ProgressiveStream {
   Bytes CustomForm() const { return WriteCustomForm({base.stream, refinement}); }
 };
 
+// The refinement of a base by the coefficients that every hand-made stream holds.
+inline RefinementBytes MakeRefinement(const BaseMesh& base, int num_levels) {
+  const Coefficients coefficients = RandomCoefficients(base, num_levels, 7);
+  return WriteRefinement(base, coefficients.steps, coefficients.levels).value();
+}
+
+// The finest level that MakeRefinement gives.
+inline TriangleMesh Refined(const BaseMesh& base, int num_levels) {
+  const Bytes bytes = MakeRefinement(base, num_levels).bytes;
+  return MeshAtLevel(DecodeRefinement(base, bytes, {}).value().mesh, num_levels).value();
+}
+
 inline ProgressiveStream MakeProgressiveStream(const BaseMesh& base, int num_levels) {
   ProgressiveStream result;
   result.base = EncodeBaseMesh(base).value();
-  const Coefficients coefficients = RandomCoefficients(result.base.mesh, num_levels, 7);
-  RefinementBytes written = WriteRefinement(result.base.mesh, coefficients.steps, coefficients.levels).value();
+  RefinementBytes written = MakeRefinement(result.base.mesh, num_levels);
   result.part_sizes.push_back(result.base.stream.size());
   result.part_sizes.insert(result.part_sizes.end(), written.part_sizes.begin(), written.part_sizes.end());
   result.refinement = std::move(written.bytes);
