@@ -85,7 +85,7 @@ StatusOr<std::vector<uint32_t>> FindVertexMap(const IntegerMesh& base, const Sto
   const int id = mesh->AddAttribute(description, /*identity_mapping=*/true, num_vertices);
   for (uint32_t v = 0; v < num_vertices; ++v) mesh->attribute(id)->SetAttributeValue(draco::AttributeValueIndex(v), &v);
   LACERTA_ASSIGN_OR_RETURN(const Bytes stream, EncodeIntegerPositions(*mesh, base.bits, attempt.settings));
-  LACERTA_ASSIGN_OR_RETURN(const StockMesh numbered, DecodeStockStream(stream, DecodeLimits()));
+  LACERTA_ASSIGN_OR_RETURN(const StockMesh numbered, DecodeStockStream(stream, kNoDecodeLimits));
   const draco::PointAttribute* const numbers = numbered.mesh->GetNamedAttribute(draco::GeometryAttribute::GENERIC);
   if (numbers == nullptr || numbered.mesh->num_faces() != coded.size()) {
     return InternalError("Draco lost the vertex numbers of the base mesh");
@@ -141,7 +141,7 @@ StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
   result.stream = std::move(attempt.stream);
   LACERTA_RETURN_IF_ERROR(SetQuantizationGrid(grid, &result.stream));
 
-  LACERTA_ASSIGN_OR_RETURN(const DecodedBase decoded, DecodeBaseMesh(result.stream, DecodeLimits()));
+  LACERTA_ASSIGN_OR_RETURN(const DecodedBase decoded, DecodeBaseMesh(result.stream, kNoDecodeLimits));
   if (decoded.mesh.positions.size() != base.lattice.size() || decoded.mesh.triangles.size() != base.triangles.size()) {
     return InvalidData("Draco made " + std::to_string(decoded.mesh.positions.size()) + " vertices and " +
                        std::to_string(decoded.mesh.triangles.size()) + " triangles of the base mesh's " +

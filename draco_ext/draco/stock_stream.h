@@ -49,6 +49,9 @@ Status SetQuantizationGrid(const QuantizationGrid& grid, Bytes* stream);
 // or with kUnsupported on a point cloud and on a bitstream version other than 2.2, which Draco writes since 2017.
 StatusOr<draco::DracoHeader> ReadMeshHeader(draco::DecoderBuffer* buffer);
 
+// For streams that this library wrote itself.
+inline constexpr DecodeLimits kNoDecodeLimits = {~uint64_t{0}, ~uint64_t{0}};
+
 struct StockMesh {
   std::unique_ptr<draco::Mesh> mesh;
   size_t bytes_used = 0;  // length of the stock stream at the front of the input

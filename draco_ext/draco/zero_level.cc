@@ -72,7 +72,7 @@ std::vector<Corners> SortedTriangles(const TriangleMesh& mesh) {
 }
 
 bool HoldsTriangles(const Bytes& stream, const std::vector<Corners>& triangles) {
-  const StatusOr<DecodedBase> decoded = DecodeBaseMesh(stream, DecodeLimits());
+  const StatusOr<DecodedBase> decoded = DecodeBaseMesh(stream, kNoDecodeLimits);
   return decoded.ok() && SortedTriangles(decoded.value().mesh) == triangles;
 }
 
@@ -98,7 +98,7 @@ StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits) {
     if (!HoldsTriangles(result.stream, triangles)) return InternalError("Draco did not keep the triangles of the mesh");
   }
   LACERTA_RETURN_IF_ERROR(SetQuantizationGrid(quantized.grid, &result.stream));
-  LACERTA_ASSIGN_OR_RETURN(DecodedBase decoded, DecodeBaseMesh(result.stream, DecodeLimits()));
+  LACERTA_ASSIGN_OR_RETURN(DecodedBase decoded, DecodeBaseMesh(result.stream, kNoDecodeLimits));
   result.mesh = std::move(decoded.mesh);
   return result;
 }
