@@ -1,11 +1,5 @@
 #include "draco/stock_stream.h"
 
-#include <algorithm>
-#include <array>
-#include <cstring>
-#include <string>
-#include <utility>
-
 #include <draco/compression/config/compression_shared.h>
 #include <draco/compression/decode.h>
 #include <draco/compression/expert_encode.h>
@@ -16,12 +10,19 @@
 #include <draco/metadata/geometry_metadata.h>
 #include <draco/metadata/metadata_decoder.h>
 
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+#include <utility>
+
 #include "draco/mesh_conversion.h"
 
 namespace lacerta {
 namespace {
 
-constexpr size_t kGridSize = 4 * sizeof(float) + 1;  // origin, range, bits: the last bytes of a stream of positions alone
+constexpr size_t kGridSize =
+    4 * sizeof(float) + 1;  // origin, range, bits: the last bytes of a stream of positions alone
 
 int PredictionMethod(StockSettings::Prediction prediction) {
   switch (prediction) {
@@ -40,25 +41,9 @@ struct Counts {
   uint32_t triangles = 0;
 };
 
-// Reads the counts that open the connectivity of a stock stream of bitstream version 2.2. `buffer` is a copy: the decoder
-// proper begins anew.
+// Reads the counts that open the connectivity. `buffer` is a copy: the decoder proper begins anew.
 StatusOr<Counts> PeekCounts(draco::DecoderBuffer buffer) {
-  draco::DracoHeader header;
-  if (const draco::Status status = draco::PointCloudDecoder::DecodeHeader(&buffer, &header); !status.ok()) {
-    return FromDracoStatus(status);
-  }
-  if (header.encoder_type != draco::TRIANGULAR_MESH) return Unsupported("Draco stream holds no triangle mesh");
-  if (header.version_major != 2 || header.version_minor != 2) {
-    return Unsupported("Draco bitstream version " + std::to_string(header.version_major) + "." +
-                       std::to_string(header.version_minor) + " is not supported, only 2.2; encode the mesh again");
-  }
-  buffer.set_bitstream_version(draco::kDracoMeshBitstreamVersion);
-  if ((header.flags & METADATA_FLAG_MASK) != 0) {
-    draco::GeometryMetadata metadata;
-    if (!draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata)) {
-      return InvalidData("metadata of the Draco stream is damaged");
-    }
-  }
+  LACERTA_ASSIGN_OR_RETURN(const draco::DracoHeader header, ReadMeshHeader(&buffer));
   Counts counts;
   if (header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING) {
     uint8_t traversal = 0;
@@ -82,9 +67,9 @@ Status CheckCounts(const Counts& counts, size_t stream_size, const DecodeLimits&
                          std::to_string(counts.triangles) + " triangles; the decode limits are " +
                          std::to_string(limits.max_vertices) + " and " + std::to_string(limits.max_triangles));
   }
-  // A coded symbol costs at least log2(4096 / 4095) = 0.00035 bits in Draco's entropy coder, which makes 22,700 symbols a
-  // byte; every triangle of edgebreaker is a symbol, and every vertex three numbers. Sequential streams are bounded by
-  // their vertices in the same way.
+  // A coded symbol costs at least log2(4096 / 4095) = 0.00035 bits in Draco's entropy coder, which makes 22,700 symbols
+  // a byte; every triangle of edgebreaker is a symbol, and every vertex three numbers. Sequential streams are bounded
+  // by their vertices in the same way.
   constexpr uint64_t kMaxSymbolsPerByte = 22700;
   constexpr uint64_t kSlack = 1u << 16;
   if (std::max(counts.vertices, counts.triangles) > kSlack + kMaxSymbolsPerByte * stream_size) {
@@ -132,6 +117,26 @@ Status SetQuantizationGrid(const QuantizationGrid& grid, Bytes* stream) {
   const std::array<float, 4> wanted = {grid.origin.x, grid.origin.y, grid.origin.z, grid.range};
   std::memcpy(written, wanted.data(), sizeof(wanted));
   return {};
+}
+
+StatusOr<draco::DracoHeader> ReadMeshHeader(draco::DecoderBuffer* buffer) {
+  draco::DracoHeader header;
+  if (const draco::Status status = draco::PointCloudDecoder::DecodeHeader(buffer, &header); !status.ok()) {
+    return FromDracoStatus(status);
+  }
+  if (header.encoder_type != draco::TRIANGULAR_MESH) return Unsupported("Draco stream holds no triangle mesh");
+  if (header.version_major != 2 || header.version_minor != 2) {
+    return Unsupported("Draco bitstream version " + std::to_string(header.version_major) + "." +
+                       std::to_string(header.version_minor) + " is not supported, only 2.2; encode the mesh again");
+  }
+  buffer->set_bitstream_version(draco::kDracoMeshBitstreamVersion);
+  if ((header.flags & METADATA_FLAG_MASK) != 0) {
+    draco::GeometryMetadata metadata;
+    if (!draco::MetadataDecoder().DecodeGeometryMetadata(buffer, &metadata)) {
+      return InvalidData("metadata of the Draco stream is damaged");
+    }
+  }
+  return header;
 }
 
 StatusOr<StockMesh> DecodeStockStream(Span<const uint8_t> stream, const DecodeLimits& limits) {
