@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "lacerta/vec3.h"
@@ -20,7 +21,8 @@ class Span {
  public:
   Span() = default;
   Span(const T* data, size_t size) : data_(data), size_(size) {}
-  Span(const std::vector<T>& values) : data_(values.data()), size_(values.size()) {}  // NOLINT: implicit on purpose
+  // NOLINTNEXTLINE: implicit on purpose
+  Span(const std::vector<std::remove_const_t<T>>& values) : data_(values.data()), size_(values.size()) {}
 
   const T* data() const { return data_; }
   size_t size() const { return size_; }
