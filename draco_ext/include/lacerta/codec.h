@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "lacerta/clean.h"
 #include "lacerta/decoder.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
@@ -47,14 +48,6 @@ struct EncodeOptions {
   EncodeMode mode = EncodeMode::kDefault;
   // Called now and then with the finished share (0..1) and what is being done; may be empty.
   std::function<void(double share, const char* stage)> progress;
-};
-
-// What cleaning did to the input before it was coded. Counts of what was removed or merged.
-struct CleanReport {
-  uint64_t welded_vertices = 0;      // merged with another vertex at exactly the same position
-  uint64_t degenerate_triangles = 0; // with a repeated vertex
-  uint64_t duplicate_triangles = 0;  // with the same three vertices as an earlier one
-  uint64_t isolated_vertices = 0;    // of no triangle
 };
 
 // One decodable state of the stream.

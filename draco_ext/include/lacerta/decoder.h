@@ -4,7 +4,10 @@
 #define LACERTA_DECODER_H_
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "lacerta/mesh.h"
@@ -18,7 +21,8 @@ struct DecodeLimits {
   uint64_t max_triangles = 128u << 20;
 };
 
-// A base mesh on an integer lattice: vertex v lies at `step` * lattice[v].
+// A base mesh on an integer lattice: vertex v lies at `step` * lattice[v]. A refinement fits exactly one of them: the same
+// vertices and triangles in the same order.
 struct BaseMesh {
   float step = 0.0f;                           // model units, > 0 and finite
   std::vector<std::array<int32_t, 3>> lattice;  // #V0, |value| < 2^24
@@ -26,6 +30,75 @@ struct BaseMesh {
 
   TriangleMesh ToMesh() const;
 };
+
+// The base mesh of a host that holds floats, as glTF and Draco decoders do: every coordinate is rounded to the nearest
+// multiple of `step`. Fails with kInvalidArgument where the step is not a positive number and with kInvalidData where a
+// coordinate is not finite, further than a quarter of a step away from the lattice, or |lattice| reaches 2^24.
+StatusOr<BaseMesh> BaseMeshFromPositions(const TriangleMesh& mesh, float step);
+
+// The triangle mesh of one level (0 = base) of a semi-regular mesh. Fails with kInvalidArgument where it has no such level
+// and with kInvalidData where the base is not manifold.
+StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level);
+
+// What the header of a refinement tells before anything is decoded.
+struct RefinementInfo {
+  int num_levels = 0;
+  uint32_t num_base_vertices = 0;
+  uint32_t num_base_triangles = 0;
+  float base_step = 0.0f;  // model units: what BaseMeshFromPositions wants
+};
+
+// Reads the header at the beginning of the bytes that follow the base section. Fails with kInvalidData where there is no
+// complete and sound header, and with kUnsupported on an unknown version.
+StatusOr<RefinementInfo> ReadRefinementInfo(Span<const uint8_t> refinement);
+
+struct RefinementOptions {
+  std::optional<int> max_level;  // stop there; empty: as far as the bytes go
+  DecodeLimits limits;
+};
+
+// Decodes a refinement as its bytes arrive.
+//   LACERTA_ASSIGN_OR_RETURN(ProgressiveDecoder decoder, ProgressiveDecoder::Create(base, {}));
+//   while (more bytes) { if (!decoder.Append(bytes).ok()) break; Draw(decoder.mesh()); }
+// After a failure the mesh decoded so far stays, and later bytes are ignored.
+class ProgressiveDecoder {
+ public:
+  // Fails with kInvalidData where a lattice value or the step is out of range, and with kLimitExceeded where the base
+  // alone is over the limits.
+  static StatusOr<ProgressiveDecoder> Create(const BaseMesh& base, const RefinementOptions& options);
+  ProgressiveDecoder(ProgressiveDecoder&&) noexcept;
+  ProgressiveDecoder& operator=(ProgressiveDecoder&&) noexcept;
+  ~ProgressiveDecoder();
+
+  // Takes the next bytes, however they are cut, and decodes every level that they complete. Returns refinement().
+  // Bytes after the last segment are ignored.
+  Status Append(Span<const uint8_t> bytes);
+
+  int level() const;         // of the finest complete level
+  int num_levels() const;    // that the header announces; 0 before it is complete
+  size_t bytes_used() const;  // length of the prefix that holds mesh(): header and complete segments
+  // Ok, or why the refinement ended early: damaged or unsupported bytes (kInvalidData, kUnsupported), a base that it was
+  // not made for (kInvalidData), or a level over the limits (kLimitExceeded). Bytes that just end are no failure.
+  const Status& refinement() const;
+  const SemiRegularMesh& mesh() const;  // base and complete levels
+
+ private:
+  struct State;
+  explicit ProgressiveDecoder(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+struct RefinementResult {
+  SemiRegularMesh mesh;   // base and complete levels
+  int level = 0;          // of mesh
+  int num_levels = 0;     // that the header announces; 0 where there is no complete header
+  Status refinement;      // as ProgressiveDecoder::refinement(); ok with level < num_levels: the bytes ended (or max_level)
+  size_t bytes_used = 0;  // as ProgressiveDecoder::bytes_used()
+};
+
+// Decodes a refinement, or any prefix of one, in one go. Fails only where `base` is at fault (see Create).
+StatusOr<RefinementResult> DecodeRefinement(const BaseMesh& base, Span<const uint8_t> refinement,
+                                            const RefinementOptions& options);
 
 }  // namespace lacerta
 

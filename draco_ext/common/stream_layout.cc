@@ -1,0 +1,25 @@
+#include "common/stream_layout.h"
+
+#include "common/crc32.h"
+
+namespace lacerta {
+
+uint32_t BaseChecksum(const BaseMesh& base) {
+  Crc32 crc;
+  for (const auto& point : base.lattice) {
+    for (const int32_t value : point) crc.AddWord(static_cast<uint32_t>(value));
+  }
+  for (const Triangle& triangle : base.triangles) {
+    for (const uint32_t vertex : triangle) crc.AddWord(vertex);
+  }
+  return crc.value();
+}
+
+uint16_t SegmentChecksum(int level, Span<const uint8_t> payload) {
+  Crc32 crc;
+  crc.Add(static_cast<uint8_t>(level));
+  crc.Add(payload);
+  return crc.low16();
+}
+
+}  // namespace lacerta

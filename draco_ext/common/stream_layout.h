@@ -1,0 +1,39 @@
+// What the refinement of a base mesh looks like in bytes, for reader (decoder/stream_reader.h) and writer
+// (encoder/stream_writer.h). Specified in docs/format.md, "Refinement header" and "Segments".
+#ifndef LACERTA_COMMON_STREAM_LAYOUT_H_
+#define LACERTA_COMMON_STREAM_LAYOUT_H_
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/coefficient_sets.h"
+#include "lacerta/decoder.h"
+
+namespace lacerta {
+
+inline constexpr std::array<uint8_t, 3> kRefinementMagic = {'L', 'A', 'C'};
+inline constexpr uint8_t kRefinementVersion = 1;
+inline constexpr int kMaxLevels = 12;
+// A base vertex has at most this many edges, so that no stencil makes a decoder slow.
+inline constexpr int kMaxBaseValence = 1024;
+inline constexpr int32_t kMaxLatticeValue = (1 << 24) - 1;  // a binary32 holds it exactly
+
+// The fields of the refinement header. The number of levels is steps.size().
+struct RefinementHeader {
+  uint32_t num_base_vertices = 0;
+  uint32_t num_base_triangles = 0;
+  float base_step = 0.0f;
+  uint32_t base_checksum = 0;
+  std::vector<LevelSteps> steps;  // of levels 1, 2, ...
+};
+
+// CRC-32 over the lattice values (three per vertex) and the triangles (three indices each) as 4-byte little-endian words.
+uint32_t BaseChecksum(const BaseMesh& base);
+
+// The checksum that the segment of `level` carries.
+uint16_t SegmentChecksum(int level, Span<const uint8_t> payload);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_COMMON_STREAM_LAYOUT_H_

@@ -1,0 +1,202 @@
+// The decoder on one page: bytes -> header -> per level: segment -> coefficients -> positions.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "common/butterfly.h"
+#include "common/coefficient_coding.h"
+#include "common/stream_layout.h"
+#include "common/subdivision.h"
+#include "decoder/range_decoder.h"
+#include "decoder/stream_reader.h"
+#include "decoder/synthesis.h"
+#include "lacerta/decoder.h"
+
+namespace lacerta {
+namespace {
+
+Status CheckBase(const BaseMesh& base, const DecodeLimits& limits) {
+  if (base.lattice.size() > limits.max_vertices || base.triangles.size() > limits.max_triangles) {
+    return LimitExceeded("the base mesh (" + std::to_string(base.lattice.size()) + " vertices, " +
+                         std::to_string(base.triangles.size()) + " triangles) is over the decode limits");
+  }
+  if (!(base.step > 0) || !std::isnormal(base.step)) return InvalidData("the step of the base mesh is not a positive number");
+  for (size_t v = 0; v < base.lattice.size(); ++v) {
+    for (const int32_t value : base.lattice[v]) {
+      if (value >= -kMaxLatticeValue && value <= kMaxLatticeValue) continue;
+      return InvalidData("vertex " + std::to_string(v) + " of the base mesh is off the lattice range of 24 bits");
+    }
+  }
+  return Status();
+}
+
+Status CheckHeaderFitsBase(const RefinementHeader& header, const SemiRegularMesh& mesh, float base_step, uint32_t checksum) {
+  if (header.num_base_vertices == mesh.num_base_vertices && header.num_base_triangles == mesh.base_triangles.size() &&
+      header.base_step == base_step && header.base_checksum == checksum) {
+    return Status();
+  }
+  return InvalidData("the refinement was made for another base mesh (" + std::to_string(header.num_base_vertices) +
+                     " vertices, " + std::to_string(header.num_base_triangles) +
+                     " triangles): the base was edited, reordered or mixed up");
+}
+
+Status CheckLevelFits(const Topology& t, int level, const DecodeLimits& limits) {
+  const LevelCounts finer = SubdividedCounts({t.num_vertices, t.num_edges(), t.num_faces()}, 1);
+  if (finer.vertices <= limits.max_vertices && finer.faces <= limits.max_triangles && 2 * finer.edges < kNone) return Status();
+  return LimitExceeded("level " + std::to_string(level) + " (" + std::to_string(finer.vertices) + " vertices, " +
+                       std::to_string(finer.faces) + " triangles) is over the decode limits");
+}
+
+Status CheckValences(const Topology& t) {
+  for (uint32_t v = 0; v < t.num_vertices; ++v) {
+    if (t.valence[v] <= kMaxBaseValence) continue;
+    return InvalidData("base vertex " + std::to_string(v) + " has " + std::to_string(t.valence[v]) + " edges; a refined base has at most " +
+                       std::to_string(kMaxBaseValence));
+  }
+  return Status();
+}
+
+bool IsFinite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+}  // namespace
+
+struct ProgressiveDecoder::State {
+  SemiRegularMesh mesh;
+  float base_step = 0.0f;
+  uint32_t base_checksum = 0;
+  RefinementOptions options;
+
+  std::optional<RefinementHeader> header;
+  Bytes pending;          // not yet used
+  size_t bytes_used = 0;  // that left `pending`
+  Status refinement;
+
+  Topology topology;  // of the finest complete level; made when the header has come
+  std::optional<StencilTable> stencils;
+  CodingState coding;
+
+  int last_level() const {
+    const int announced = static_cast<int>(header->steps.size());
+    return options.max_level ? std::min(announced, *options.max_level) : announced;
+  }
+  bool done() const { return !refinement.ok() || (header && mesh.num_levels >= last_level()); }
+
+  // Reads on in `bytes`; returns how many of them were used.
+  StatusOr<size_t> TakeHeader(Span<const uint8_t> bytes);
+  StatusOr<size_t> TakeSegment(Span<const uint8_t> bytes);
+  Status AddLevel(const LevelSteps& steps, Span<const uint8_t> payload);
+};
+
+StatusOr<size_t> ProgressiveDecoder::State::TakeHeader(Span<const uint8_t> bytes) {
+  LACERTA_ASSIGN_OR_RETURN(std::optional<ReadHeader> read, ReadRefinementHeader(bytes));
+  if (!read) return size_t{0};
+  LACERTA_RETURN_IF_ERROR(CheckHeaderFitsBase(read->header, mesh, base_step, base_checksum));
+  LACERTA_ASSIGN_OR_RETURN(topology, BuildTopology(mesh.num_base_vertices, mesh.base_triangles));
+  LACERTA_RETURN_IF_ERROR(CheckValences(topology));
+  stencils.emplace(topology);
+  header = std::move(read->header);
+  return read->size;
+}
+
+StatusOr<size_t> ProgressiveDecoder::State::TakeSegment(Span<const uint8_t> bytes) {
+  const int level = mesh.num_levels + 1;
+  LACERTA_RETURN_IF_ERROR(CheckLevelFits(topology, level, options.limits));
+  LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadSegment> segment, ReadRefinementSegment(bytes, level));
+  if (!segment) return size_t{0};
+  LACERTA_RETURN_IF_ERROR(AddLevel(header->steps[mesh.num_levels], segment->payload));
+  return segment->size;
+}
+
+Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const uint8_t> payload) {
+  QuantizedLevel quantized{std::vector<int32_t>(topology.num_edges()), std::vector<int32_t>(size_t{2} * topology.num_edges())};
+  RangeDecoder decoder(payload);
+  CodeLevel(topology, steps, &coding, &quantized, &decoder);
+  SynthesizeLevel(topology, *stencils, steps, quantized, &mesh.positions);
+  const auto first_new = mesh.positions.begin() + topology.num_vertices;
+  if (!std::all_of(first_new, mesh.positions.end(), IsFinite)) {
+    mesh.positions.erase(first_new, mesh.positions.end());
+    return InvalidData("level " + std::to_string(mesh.num_levels + 1) + " has positions that are not finite");
+  }
+  topology = Refine(topology);
+  ++mesh.num_levels;
+  return Status();
+}
+
+StatusOr<ProgressiveDecoder> ProgressiveDecoder::Create(const BaseMesh& base, const RefinementOptions& options) {
+  LACERTA_RETURN_IF_ERROR(CheckBase(base, options.limits));
+  auto state = std::make_unique<State>();
+  TriangleMesh mesh = base.ToMesh();
+  state->mesh.num_base_vertices = static_cast<uint32_t>(base.lattice.size());
+  state->mesh.base_triangles = std::move(mesh.triangles);
+  state->mesh.positions = std::move(mesh.positions);
+  state->base_step = base.step;
+  state->base_checksum = BaseChecksum(base);
+  state->options = options;
+  return ProgressiveDecoder(std::move(state));
+}
+
+Status ProgressiveDecoder::Append(Span<const uint8_t> bytes) {
+  State& s = *state_;
+  if (s.done()) return s.refinement;
+  s.pending.insert(s.pending.end(), bytes.begin(), bytes.end());
+  size_t used = 0;
+  while (!s.done()) {
+    const Span<const uint8_t> rest = Span<const uint8_t>(s.pending.data(), s.pending.size()).Subspan(used);
+    const StatusOr<size_t> taken = s.header ? s.TakeSegment(rest) : s.TakeHeader(rest);
+    if (!taken.ok()) s.refinement = taken.status();
+    if (!taken.ok() || taken.value() == 0) break;
+    used += taken.value();
+  }
+  s.bytes_used += used;
+  s.pending.erase(s.pending.begin(), s.pending.begin() + static_cast<ptrdiff_t>(used));
+  if (s.done()) s.pending = {};
+  return s.refinement;
+}
+
+ProgressiveDecoder::ProgressiveDecoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ProgressiveDecoder::ProgressiveDecoder(ProgressiveDecoder&&) noexcept = default;
+ProgressiveDecoder& ProgressiveDecoder::operator=(ProgressiveDecoder&&) noexcept = default;
+ProgressiveDecoder::~ProgressiveDecoder() = default;
+
+int ProgressiveDecoder::level() const { return state_->mesh.num_levels; }
+int ProgressiveDecoder::num_levels() const { return state_->header ? static_cast<int>(state_->header->steps.size()) : 0; }
+size_t ProgressiveDecoder::bytes_used() const { return state_->bytes_used; }
+const Status& ProgressiveDecoder::refinement() const { return state_->refinement; }
+const SemiRegularMesh& ProgressiveDecoder::mesh() const { return state_->mesh; }
+
+StatusOr<RefinementInfo> ReadRefinementInfo(Span<const uint8_t> refinement) {
+  LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadHeader> read, ReadRefinementHeader(refinement));
+  if (!read) return InvalidData("the refinement header is incomplete: " + std::to_string(refinement.size()) + " bytes");
+  const RefinementHeader& header = read->header;
+  return RefinementInfo{static_cast<int>(header.steps.size()), header.num_base_vertices, header.num_base_triangles,
+                        header.base_step};
+}
+
+StatusOr<RefinementResult> DecodeRefinement(const BaseMesh& base, Span<const uint8_t> refinement,
+                                            const RefinementOptions& options) {
+  LACERTA_ASSIGN_OR_RETURN(ProgressiveDecoder decoder, ProgressiveDecoder::Create(base, options));
+  RefinementResult result;
+  result.refinement = decoder.Append(refinement);
+  result.mesh = decoder.mesh();
+  result.level = decoder.level();
+  result.num_levels = decoder.num_levels();
+  result.bytes_used = decoder.bytes_used();
+  return result;
+}
+
+StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level) {
+  if (level < 0 || level > mesh.num_levels) {
+    return InvalidArgument("the mesh has levels 0 to " + std::to_string(mesh.num_levels) + ", not " + std::to_string(level));
+  }
+  if (level == 0) {
+    const auto end = mesh.positions.begin() + mesh.num_base_vertices;
+    return TriangleMesh{std::vector<Vec3f>(mesh.positions.begin(), end), mesh.base_triangles};
+  }
+  LACERTA_ASSIGN_OR_RETURN(Topology topology, BuildTopology(mesh.num_base_vertices, mesh.base_triangles));
+  for (int i = 0; i < level; ++i) topology = Refine(topology);
+  const auto end = mesh.positions.begin() + topology.num_vertices;
+  return TriangleMesh{std::vector<Vec3f>(mesh.positions.begin(), end), std::move(topology.triangles)};
+}
+
+}  // namespace lacerta

@@ -1,0 +1,134 @@
+#include "decoder/stream_reader.h"
+
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "common/crc32.h"
+
+namespace lacerta {
+namespace {
+
+// A cursor over bytes that may end too early; after that every read gives 0 and at_end() says so.
+class Cursor {
+ public:
+  explicit Cursor(Span<const uint8_t> bytes) : bytes_(bytes) {}
+
+  uint8_t Byte() {
+    if (position_ < bytes_.size()) return bytes_[position_++];
+    at_end_ = true;
+    return 0;
+  }
+  uint16_t Word16() {
+    const uint16_t low = Byte();
+    return static_cast<uint16_t>(low | Byte() << 8);
+  }
+  uint32_t Word32() {
+    const uint32_t low = Word16();
+    return low | static_cast<uint32_t>(Word16()) << 16;
+  }
+  // Seven bits per byte, lowest first, the top bit set in all bytes but the last.
+  uint32_t Varint() {
+    uint32_t value = 0;
+    for (int shift = 0; shift < 35; shift += 7) {
+      const uint8_t byte = Byte();
+      const uint32_t bits = byte & 0x7f;
+      if (shift == 28 && byte > 0x0f) break;
+      value |= bits << shift;
+      if (byte < 0x80) return value;
+    }
+    malformed_ = true;
+    return 0;
+  }
+
+  bool at_end() const { return at_end_; }        // a read went past the end
+  bool malformed() const { return malformed_; }  // a varint exceeds 32 bits
+  size_t position() const { return position_; }
+
+ private:
+  Span<const uint8_t> bytes_;
+  size_t position_ = 0;
+  bool at_end_ = false, malformed_ = false;
+};
+
+struct StepField {
+  float step = 0.0f;
+  uint8_t bias = 0;
+  bool valid = false;
+};
+
+StepField ReadStep(Cursor& cursor) {
+  StepField field;
+  const uint16_t bits = cursor.Word16();
+  field.step = StepFromBits(bits);
+  if (bits != 0) field.bias = cursor.Byte();
+  field.valid = bits == 0 || (field.step > 0 && std::isnormal(field.step) && field.bias <= kMaxBias);
+  return field;
+}
+
+}  // namespace
+
+StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> bytes) {
+  using Result = std::optional<ReadHeader>;
+  Cursor cursor(bytes);
+  for (const uint8_t expected : kRefinementMagic) {
+    const uint8_t byte = cursor.Byte();
+    if (cursor.at_end()) return Result();
+    if (byte != expected) return InvalidData("the bytes after the base mesh are not a Lacerta refinement (no \"LAC\" mark)");
+  }
+  const int version = cursor.Byte();
+  if (cursor.at_end()) return Result();
+  if (version != kRefinementVersion) {
+    return Unsupported("refinement version " + std::to_string(version) + " is not known, this decoder reads version " +
+                       std::to_string(kRefinementVersion) + "; a newer Lacerta may read it");
+  }
+  const int levels_and_layers = cursor.Byte();
+  if (cursor.at_end()) return Result();
+  const int num_levels = levels_and_layers & 0x0f, num_layers = levels_and_layers >> 4;
+  if (num_layers != 1) return Unsupported(std::to_string(num_layers) + " quality layers per level; version 1 has one");
+  if (num_levels < 1 || num_levels > kMaxLevels) {
+    return InvalidData(std::to_string(num_levels) + " refinement levels; 1 to " + std::to_string(kMaxLevels) + " are legal");
+  }
+  RefinementHeader header;
+  header.num_base_vertices = cursor.Varint();
+  header.num_base_triangles = cursor.Varint();
+  const uint32_t step_bits = cursor.Word32();
+  std::memcpy(&header.base_step, &step_bits, sizeof(step_bits));
+  header.base_checksum = cursor.Word32();
+  bool steps_valid = true;
+  for (int level = 1; level <= num_levels; ++level) {
+    const StepField normal = ReadStep(cursor);
+    const StepField tangential = ReadStep(cursor);
+    steps_valid = steps_valid && normal.valid && tangential.valid;
+    header.steps.push_back({normal.step, tangential.step, normal.bias, tangential.bias});
+  }
+  const size_t checked_size = cursor.position();
+  const uint16_t checksum = cursor.Word16();
+  if (cursor.at_end()) return Result();
+  Crc32 crc;
+  crc.Add(bytes.First(checked_size));
+  if (crc.low16() != checksum) return InvalidData("the refinement header is damaged (checksum mismatch)");
+  if (cursor.malformed()) return InvalidData("a count in the refinement header exceeds 32 bits");
+  if (!(header.base_step > 0) || !std::isnormal(header.base_step)) {
+    return InvalidData("the base step in the refinement header is not a positive number");
+  }
+  if (!steps_valid) return InvalidData("a quantization step or bias in the refinement header is out of range");
+  return Result(ReadHeader{std::move(header), cursor.position()});
+}
+
+StatusOr<std::optional<ReadSegment>> ReadRefinementSegment(Span<const uint8_t> bytes, int level) {
+  using Result = std::optional<ReadSegment>;
+  Cursor cursor(bytes);
+  const uint32_t length = cursor.Varint();
+  const uint16_t checksum = cursor.Word16();
+  if (cursor.malformed()) return InvalidData("the length of the segment of level " + std::to_string(level) + " exceeds 32 bits");
+  if (cursor.at_end() || bytes.size() - cursor.position() < length) return Result();
+  const Span<const uint8_t> payload = bytes.Subspan(cursor.position()).First(length);
+  if (SegmentChecksum(level, payload) != checksum) {
+    return InvalidData("the segment of level " + std::to_string(level) + " is damaged (checksum mismatch)");
+  }
+  return Result(ReadSegment{payload, cursor.position() + length});
+}
+
+}  // namespace lacerta

@@ -1,0 +1,227 @@
+#include "draco/base_mesh_codec.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <draco/attributes/geometry_attribute.h>
+#include <draco/attributes/point_attribute.h>
+
+#include "draco/mesh_conversion.h"
+#include "draco/stock_stream.h"
+
+namespace lacerta {
+namespace {
+
+constexpr int32_t kLatticeEnd = 1 << 24;
+
+// A base as Draco is given it: integers from 0 on, as floats.
+struct IntegerMesh {
+  std::array<int32_t, 3> origin{};
+  int bits = 1;
+  TriangleMesh mesh;
+};
+
+bool IsUsableStep(float step) { return std::isnormal(step) && step > 0.0f; }
+
+StatusOr<IntegerMesh> ToIntegerMesh(const BaseMesh& base) {
+  if (!IsUsableStep(base.step)) {
+    return InvalidData("step of the base lattice is " + std::to_string(base.step) + "; it must be positive and normal");
+  }
+  if (base.lattice.empty() || base.triangles.empty()) return InvalidData("base mesh is empty");
+  std::array<int32_t, 3> low = base.lattice[0];
+  std::array<int32_t, 3> high = base.lattice[0];
+  for (size_t v = 0; v < base.lattice.size(); ++v) {
+    for (size_t c = 0; c < 3; ++c) {
+      const int32_t value = base.lattice[v][c];
+      if (value <= -kLatticeEnd || value >= kLatticeEnd) {
+        return InvalidData("lattice value " + std::to_string(value) + " of base vertex " + std::to_string(v) +
+                           " is 2^24 or more; choose a larger step");
+      }
+      low[c] = std::min(low[c], value);
+      high[c] = std::max(high[c], value);
+    }
+  }
+  IntegerMesh result;
+  result.origin = low;
+  const int32_t extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  while (extent >> result.bits != 0) ++result.bits;
+  if (result.bits > 24) return InvalidData("base lattice spans more than 24 bits; choose a larger step");
+  for (const std::array<int32_t, 3>& p : base.lattice) {
+    result.mesh.positions.push_back({static_cast<float>(p[0] - low[0]), static_cast<float>(p[1] - low[1]),
+                                     static_cast<float>(p[2] - low[2])});
+  }
+  result.mesh.triangles = base.triangles;
+  LACERTA_RETURN_IF_ERROR(CheckEncodable(result.mesh).WithContext("base mesh"));
+  return result;
+}
+
+// Puts corner `corner` of triangle `first` at the front of the triangle list: edgebreaker starts there.
+TriangleMesh StartingAt(const TriangleMesh& mesh, uint32_t first, uint32_t corner) {
+  TriangleMesh result = mesh;
+  std::rotate(result.triangles.begin(), result.triangles.begin() + first, result.triangles.end());
+  Triangle& front = result.triangles.front();
+  std::rotate(front.begin(), front.begin() + corner, front.end());
+  return result;
+}
+
+// A way to code a base, and what came out of it.
+struct Attempt {
+  StockSettings settings;
+  uint32_t first = 0;
+  uint32_t corner = 0;
+  Bytes stream;
+};
+
+Status Try(const IntegerMesh& base, Attempt attempt, Attempt* best) {
+  const auto mesh = ToDracoMesh(StartingAt(base.mesh, attempt.first, attempt.corner));
+  LACERTA_ASSIGN_OR_RETURN(attempt.stream, EncodeIntegerPositions(*mesh, base.bits, attempt.settings));
+  if (best->stream.empty() || attempt.stream.size() < best->stream.size()) *best = std::move(attempt);
+  return {};
+}
+
+// Every setting from the first triangle, then other starting triangles with the best setting. A larger base gets fewer of
+// them: there the start matters less and time more.
+StatusOr<Attempt> FindSmallest(const IntegerMesh& base) {
+  using Connectivity = StockSettings::Connectivity;
+  using Prediction = StockSettings::Prediction;
+  Attempt best;
+  for (const Connectivity connectivity : {Connectivity::kEdgebreaker, Connectivity::kEdgebreakerValence}) {
+    for (const Prediction prediction : {Prediction::kParallelogram, Prediction::kConstrainedMultiParallelogram}) {
+      for (const int speed : {0, 1, 3, 5, 7}) {
+        Attempt attempt;
+        attempt.settings = {connectivity, prediction, speed};
+        LACERTA_RETURN_IF_ERROR(Try(base, std::move(attempt), &best));
+      }
+    }
+  }
+  return best;
+}
+
+// The decoder's step is range / (2^bits - 1), rounded to float: the range that makes it `step` exactly.
+float RangeForStep(float step, int bits) {
+  const auto divisor = static_cast<float>((1 << bits) - 1);
+  const float range = step * divisor;
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const float candidate : {range, std::nextafter(range, 0.0f), std::nextafter(range, kInfinity)}) {
+    if (candidate / divisor == step) return candidate;
+  }
+  return range;
+}
+
+// The input vertex behind each vertex of `coded`, the decoded triangles of the stream. Draco does not tell, so the same mesh
+// is coded once more with the vertex number as a second attribute: that may change the order of the vertices but not the
+// one of triangles and corners. (IsRenumbering makes sure of it.)
+StatusOr<std::vector<uint32_t>> FindVertexMap(const IntegerMesh& base, const Attempt& attempt,
+                                              const std::vector<Triangle>& coded) {
+  const auto mesh = ToDracoMesh(StartingAt(base.mesh, attempt.first, attempt.corner));
+  const auto num_vertices = static_cast<uint32_t>(base.mesh.positions.size());
+  draco::GeometryAttribute description;
+  description.Init(draco::GeometryAttribute::GENERIC, nullptr, 1, draco::DT_UINT32, false, sizeof(uint32_t), 0);
+  const int id = mesh->AddAttribute(description, /*identity_mapping=*/true, num_vertices);
+  for (uint32_t v = 0; v < num_vertices; ++v) mesh->attribute(id)->SetAttributeValue(draco::AttributeValueIndex(v), &v);
+  LACERTA_ASSIGN_OR_RETURN(const Bytes stream, EncodeIntegerPositions(*mesh, base.bits, attempt.settings));
+  LACERTA_ASSIGN_OR_RETURN(const StockMesh numbered, DecodeStockStream(stream, DecodeLimits()));
+  const draco::PointAttribute* const numbers = numbered.mesh->GetNamedAttribute(draco::GeometryAttribute::GENERIC);
+  if (numbers == nullptr || numbered.mesh->num_faces() != coded.size()) {
+    return InternalError("Draco lost the vertex numbers of the base mesh");
+  }
+  std::vector<uint32_t> map(num_vertices, num_vertices);
+  for (uint32_t f = 0; f < coded.size(); ++f) {
+    const draco::Mesh::Face& face = numbered.mesh->face(draco::FaceIndex(f));
+    for (size_t k = 0; k < 3; ++k) {
+      numbers->ConvertValue<uint32_t, 1>(numbers->mapped_index(face[k]), &map[coded[f][k]]);
+    }
+  }
+  return map;
+}
+
+Triangle StartingWithSmallest(Triangle t) {
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  return t;
+}
+
+// Whether `coded` is `base` with its vertices renumbered by `map`, the triangles in another order.
+bool IsRenumbering(const BaseMesh& base, const BaseMesh& coded, const std::vector<uint32_t>& map) {
+  if (map.size() != base.lattice.size() || coded.lattice.size() != map.size()) return false;
+  std::vector<bool> seen(map.size(), false);
+  for (size_t v = 0; v < map.size(); ++v) {
+    if (map[v] >= map.size() || seen[map[v]] || coded.lattice[v] != base.lattice[map[v]]) return false;
+    seen[map[v]] = true;
+  }
+  std::vector<Triangle> before;
+  std::vector<Triangle> after;
+  for (const Triangle& t : base.triangles) before.push_back(StartingWithSmallest(t));
+  for (const Triangle& t : coded.triangles) after.push_back(StartingWithSmallest({map[t[0]], map[t[1]], map[t[2]]}));
+  std::sort(before.begin(), before.end());
+  std::sort(after.begin(), after.end());
+  return before == after;
+}
+
+}  // namespace
+
+float ShortStep(float step) {
+  int exponent = 0;
+  const float significand = std::frexp(step, &exponent);
+  return std::ldexp(std::floor(std::ldexp(significand, 8)), exponent - 8);
+}
+
+StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
+  LACERTA_ASSIGN_OR_RETURN(const IntegerMesh integers, ToIntegerMesh(base));
+  LACERTA_ASSIGN_OR_RETURN(Attempt attempt, FindSmallest(integers));
+  QuantizationGrid grid;
+  for (int c = 0; c < 3; ++c) grid.origin[c] = base.step * static_cast<float>(integers.origin[static_cast<size_t>(c)]);
+  grid.range = RangeForStep(base.step, integers.bits);
+  if (!std::isfinite(grid.range)) return InvalidData("step times extent of the base lattice does not fit a float");
+  CodedBase result;
+  result.stream = std::move(attempt.stream);
+  LACERTA_RETURN_IF_ERROR(SetQuantizationGrid(grid, &result.stream));
+
+  LACERTA_ASSIGN_OR_RETURN(const DecodedBase decoded, DecodeBaseMesh(result.stream, DecodeLimits()));
+  if (decoded.mesh.positions.size() != base.lattice.size() || decoded.mesh.triangles.size() != base.triangles.size()) {
+    return InvalidData("Draco made " + std::to_string(decoded.mesh.positions.size()) + " vertices and " +
+                       std::to_string(decoded.mesh.triangles.size()) + " triangles of the base mesh's " +
+                       std::to_string(base.lattice.size()) + " and " + std::to_string(base.triangles.size()) +
+                       ": the base must be edge-manifold and oriented, one fan of triangles around each vertex");
+  }
+  LACERTA_ASSIGN_OR_RETURN(result.mesh, ToLattice(decoded.mesh, base.step));
+  LACERTA_ASSIGN_OR_RETURN(result.vertex_map, FindVertexMap(integers, attempt, result.mesh.triangles));
+  if (!IsRenumbering(base, result.mesh, result.vertex_map)) {
+    return InvalidData("Draco changed the base mesh: it must be edge-manifold and oriented, one fan around each vertex");
+  }
+  return result;
+}
+
+StatusOr<DecodedBase> DecodeBaseMesh(Span<const uint8_t> stream, const DecodeLimits& limits) {
+  LACERTA_ASSIGN_OR_RETURN(const StockMesh stock, DecodeStockStream(stream, limits));
+  DecodedBase result;
+  LACERTA_ASSIGN_OR_RETURN(result.mesh, FromDracoMesh(*stock.mesh));
+  result.bytes_used = stock.bytes_used;
+  return result;
+}
+
+StatusOr<BaseMesh> ToLattice(const TriangleMesh& mesh, float step) {
+  if (!IsUsableStep(step)) return InvalidArgument("step of the base lattice is " + std::to_string(step));
+  BaseMesh result;
+  result.step = step;
+  result.triangles = mesh.triangles;
+  result.lattice.resize(mesh.positions.size());
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    for (int c = 0; c < 3; ++c) {
+      const double exact = static_cast<double>(mesh.positions[v][c]) / static_cast<double>(step);
+      const double rounded = std::round(exact);
+      if (!(std::fabs(rounded) < kLatticeEnd) || !(std::fabs(exact - rounded) <= 0.25)) {
+        return InvalidData("coordinate " + std::to_string(c) + " of base vertex " + std::to_string(v) +
+                           " is not a multiple of the step " + std::to_string(step));
+      }
+      result.lattice[v][static_cast<size_t>(c)] = static_cast<int32_t>(rounded);
+    }
+  }
+  return result;
+}
+
+}  // namespace lacerta

@@ -1,0 +1,49 @@
+// The base mesh of a progressive stream as a stock Draco stream (docs/format.md, "Base section").
+#ifndef LACERTA_DRACO_BASE_MESH_CODEC_H_
+#define LACERTA_DRACO_BASE_MESH_CODEC_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lacerta/decoder.h"
+#include "lacerta/mesh.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+// A coded base and what every decoder gets from it. Draco renumbers vertices and triangles and rotates triangles, so all
+// that follows must be computed on `mesh`.
+struct CodedBase {
+  Bytes stream;                      // edgebreaker, bitstream version 2.2
+  BaseMesh mesh;                     // in the decoder's order; step as in the input
+  std::vector<uint32_t> vertex_map;  // #V0, coded vertex -> input vertex
+};
+
+// Codes a base mesh without loss in the fewest bytes found among Draco's settings and starting triangles; deterministic.
+// The decoder's floats round to the lattice exactly; they equal BaseMesh::ToMesh() bit for bit where step * lattice is
+// exact in float, as with a step from ShortStep and |lattice| < 2^16.
+// Fails with kInvalidData on an empty base, a step that is not a positive normal float, lattice values of 2^24 or more or
+// spanning more than 24 bits, indices out of range, and on what Draco cannot carry unchanged: degenerate triangles,
+// non-manifold edges and vertices, vertices of no triangle.
+StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base);
+
+// The largest float with an 8 bit significand that is not greater than `step`, a positive normal float.
+float ShortStep(float step);
+
+struct DecodedBase {
+  TriangleMesh mesh;      // floats as stock Draco gives them
+  size_t bytes_used = 0;  // length of the base at the front of the stream; what follows is refinement
+};
+
+// Decodes the stock Draco mesh stream at the front of `stream`, whatever its method and attributes, and checks all
+// indices and positions. Safe on untrusted bytes as far as libdraco is: its counts are checked against `limits` first.
+StatusOr<DecodedBase> DecodeBaseMesh(Span<const uint8_t> stream, const DecodeLimits& limits);
+
+// The lattice that a decoded base lies on: lattice = round(position / step). Fails with kInvalidData where a position is
+// further than 1/4 step away from the lattice or |lattice| reaches 2^24, with kInvalidArgument on a bad step.
+StatusOr<BaseMesh> ToLattice(const TriangleMesh& mesh, float step);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DRACO_BASE_MESH_CODEC_H_

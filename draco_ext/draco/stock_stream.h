@@ -1,0 +1,59 @@
+// Stock Draco mesh streams: what Draco's own encoders write and every Draco decoder reads.
+#ifndef LACERTA_DRACO_STOCK_STREAM_H_
+#define LACERTA_DRACO_STOCK_STREAM_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include <draco/mesh/mesh.h>
+
+#include "lacerta/decoder.h"
+#include "lacerta/mesh.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+// Bytes of the header that every Draco stream begins with: "DRACO", major, minor, geometry type, method, u16 flags.
+inline constexpr size_t kDracoHeaderSize = 11;
+
+// How Draco is asked to code a mesh.
+struct StockSettings {
+  enum class Connectivity { kEdgebreaker, kEdgebreakerValence, kSequential };
+  enum class Prediction { kDifference, kParallelogram, kConstrainedMultiParallelogram };
+
+  Connectivity connectivity = Connectivity::kEdgebreaker;
+  Prediction prediction = Prediction::kParallelogram;
+  // Draco's speed, 0..10. It picks the vertex traversal (0: by prediction degree, else depth first) and the size of the
+  // entropy coder's tables; the two choices above are made explicitly.
+  int speed = 0;
+};
+
+// Codes a mesh whose positions are the integers 0 .. 2^bits - 1, held as floats; 1 <= bits <= 24. A decoder gets the very
+// integers back, in Draco's order of vertices and faces. The mesh must pass CheckEncodable.
+StatusOr<Bytes> EncodeIntegerPositions(const draco::Mesh& mesh, int bits, const StockSettings& settings);
+
+// Where a decoder puts the integers: p = origin + integer * (range / (2^bits - 1)), in float arithmetic.
+struct QuantizationGrid {
+  Vec3f origin;        // model units
+  float range = 1.0f;  // model units, > 0
+};
+
+// Writes the grid over the one of `stream`, a result of EncodeIntegerPositions on a mesh with no other attribute. Draco's
+// options cannot carry it: they store floats as decimal text with six digits after the point.
+Status SetQuantizationGrid(const QuantizationGrid& grid, Bytes* stream);
+
+struct StockMesh {
+  std::unique_ptr<draco::Mesh> mesh;
+  size_t bytes_used = 0;  // length of the stock stream at the front of the input
+};
+
+// Decodes the stock mesh stream at the front of `stream` with Draco's own decoder. Counts are read and checked against
+// `limits`, and against what a stream of this length can hold at all, before Draco takes memory for them. Fails with
+// kInvalidData, kUnsupported (a point cloud, another method, a bitstream version other than 2.2) or kLimitExceeded.
+// Indices and positions of the result are not checked yet: FromDracoMesh does that.
+StatusOr<StockMesh> DecodeStockStream(Span<const uint8_t> stream, const DecodeLimits& limits);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DRACO_STOCK_STREAM_H_

@@ -1,0 +1,47 @@
+// Choice of the quantized coefficients by their effect on the surface that the decoder will show: coordinate descent on
+//   distortion + lambda * bits
+// over the coefficients of all levels and the lattice of the base, coarse to fine, several times over.
+//
+// Distortion is that of encoder/surface_target.h at the finest level, linearized around the present surface; the effect of a
+// coefficient is looked at one level finer than its own, with the gradient brought there by the transposed subdivision and
+// the masses lumped. Bits are those that the adaptive models charge at that point of the stream.
+#ifndef LACERTA_ENCODER_COEFFICIENT_DESCENT_H_
+#define LACERTA_ENCODER_COEFFICIENT_DESCENT_H_
+
+#include <vector>
+
+#include "common/coefficient_sets.h"
+#include "encoder/surface_target.h"
+#include "lacerta/decoder.h"
+
+namespace lacerta {
+
+// A base mesh with quantized details: all that a stream holds.
+struct CodedSurface {
+  BaseMesh base;
+  std::vector<LevelSteps> steps;        // L
+  std::vector<QuantizedLevel> levels;   // L
+};
+
+struct DescentOptions {
+  double lambda = 0.0;   // squared model units per bit
+  int passes = 2;
+  bool move_base = true;  // the lattice points of the base may move too
+};
+
+// The surface that a decoder makes of it, all levels: #V of the finest.
+std::vector<Vec3f> Synthesize(const SurfaceTarget& target, const CodedSurface& coded);
+
+// Closed loop: each detail is taken against the decoded coarser level and rounded. Vertices found by piercing slide along the
+// input's tangent plane onto the normal line and need no tangential part.
+CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& base, const std::vector<LevelSteps>& steps);
+
+// Improves `coded`, whose steps stay as they are.
+CodedSurface Descend(const SurfaceTarget& target, CodedSurface coded, const DescentOptions& options);
+
+// Mean squared distance of the decoded vertices to their planes, weighted by area: model units squared.
+double PlaneDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& positions);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_ENCODER_COEFFICIENT_DESCENT_H_

@@ -1,0 +1,134 @@
+#include "encoder/stream_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "common/coefficient_coding.h"
+#include "common/crc32.h"
+#include "common/stream_layout.h"
+#include "encoder/range_encoder.h"
+
+namespace lacerta {
+namespace {
+
+void PutWord16(uint32_t value, Bytes* bytes) {
+  bytes->push_back(static_cast<uint8_t>(value));
+  bytes->push_back(static_cast<uint8_t>(value >> 8));
+}
+
+void PutWord32(uint32_t value, Bytes* bytes) {
+  PutWord16(value & 0xffff, bytes);
+  PutWord16(value >> 16, bytes);
+}
+
+void PutVarint(size_t value, Bytes* bytes) {
+  for (; value >= 0x80; value >>= 7) bytes->push_back(static_cast<uint8_t>(value | 0x80));
+  bytes->push_back(static_cast<uint8_t>(value));
+}
+
+void PutStep(float step, uint8_t bias, Bytes* bytes) {
+  PutWord16(StepToBits(step), bytes);
+  if (step > 0) bytes->push_back(bias);
+}
+
+Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps) {
+  Bytes bytes(kRefinementMagic.begin(), kRefinementMagic.end());
+  bytes.push_back(kRefinementVersion);
+  bytes.push_back(static_cast<uint8_t>(steps.size() | 1 << 4));  // one quality layer
+  PutVarint(base.lattice.size(), &bytes);
+  PutVarint(base.triangles.size(), &bytes);
+  uint32_t step_bits;
+  std::memcpy(&step_bits, &base.step, sizeof(step_bits));
+  PutWord32(step_bits, &bytes);
+  PutWord32(BaseChecksum(base), &bytes);
+  for (const LevelSteps& s : steps) {
+    PutStep(s.normal_step, s.normal_bias, &bytes);
+    PutStep(s.tangential_step, s.tangential_bias, &bytes);
+  }
+  Crc32 crc;
+  crc.Add(bytes);
+  PutWord16(crc.low16(), &bytes);
+  return bytes;
+}
+
+void PutSegment(int level, const Bytes& payload, Bytes* bytes) {
+  PutVarint(payload.size(), bytes);
+  PutWord16(SegmentChecksum(level, payload), bytes);
+  bytes->insert(bytes->end(), payload.begin(), payload.end());
+}
+
+Status CheckSet(const char* name, int level, const std::vector<int32_t>& set, size_t size, float step, uint8_t bias) {
+  const std::string where = std::string(name) + " set of level " + std::to_string(level);
+  if (set.size() != size) {
+    return InvalidArgument(where + " has " + std::to_string(set.size()) + " coefficients, not " + std::to_string(size));
+  }
+  if (RoundStep(step) != step || bias > kMaxBias) return InvalidArgument(where + ": the step is not rounded or the bias over 15");
+  uint32_t largest = 0;
+  for (const int32_t q : set) largest = std::max(largest, Magnitude(q));
+  if (largest <= static_cast<uint32_t>(step > 0 ? kMaxMagnitude : 0)) return Status();
+  return InvalidArgument(where + " has a coefficient of magnitude " + std::to_string(largest) +
+                         (step > 0 ? "; take a larger step" : " but no step"));
+}
+
+Status CheckLevel(int level, const Topology& t, const LevelSteps& steps, const QuantizedLevel& q) {
+  LACERTA_RETURN_IF_ERROR(CheckSet("normal", level, q.normal, t.num_edges(), steps.normal_step, steps.normal_bias));
+  return CheckSet("tangential", level, q.tangential, size_t{2} * t.num_edges(), steps.tangential_step, steps.tangential_bias);
+}
+
+}  // namespace
+
+StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_levels) {
+  if (num_levels < 0 || num_levels > kMaxLevels) {
+    return InvalidArgument(std::to_string(num_levels) + " levels; 0 to " + std::to_string(kMaxLevels) + " are possible");
+  }
+  std::vector<Topology> topologies;
+  if (num_levels == 0) return topologies;
+  LACERTA_ASSIGN_OR_RETURN(Topology t, BuildTopology(static_cast<uint32_t>(base.lattice.size()), base.triangles));
+  const auto widest = std::max_element(t.valence.begin(), t.valence.end());
+  if (widest != t.valence.end() && *widest > kMaxBaseValence) {
+    return InvalidData("base vertex " + std::to_string(widest - t.valence.begin()) + " has " + std::to_string(*widest) +
+                       " edges; a refined base has at most " + std::to_string(kMaxBaseValence));
+  }
+  if (2 * SubdividedCounts({t.num_vertices, t.num_edges(), t.num_faces()}, num_levels).edges >= kNone) {
+    return InvalidArgument("a base of " + std::to_string(t.num_faces()) + " triangles is too large for " +
+                           std::to_string(num_levels) + " levels");
+  }
+  topologies.push_back(std::move(t));
+  while (static_cast<int>(topologies.size()) < num_levels) topologies.push_back(Refine(topologies.back()));
+  return topologies;
+}
+
+StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topology> topologies,
+                                          const std::vector<LevelSteps>& steps, const std::vector<QuantizedLevel>& levels) {
+  if (topologies.size() != levels.size() || steps.size() != levels.size()) {
+    return InvalidArgument("numbers of topologies, steps and levels differ");
+  }
+  if (!(base.step > 0) || !std::isnormal(base.step)) return InvalidArgument("the base step must be a positive number");
+  RefinementBytes result;
+  if (levels.empty()) return result;
+  result.bytes = WriteHeader(base, steps);
+  size_t part_begin = 0;
+  CodingState state;
+  for (size_t i = 0; i < levels.size(); ++i) {
+    const int level = static_cast<int>(i) + 1;
+    LACERTA_RETURN_IF_ERROR(CheckLevel(level, topologies[i], steps[i], levels[i]));
+    RangeEncoder encoder;
+    QuantizedLevel coefficients = levels[i];
+    CodeLevel(topologies[i], steps[i], &state, &coefficients, &encoder);
+    PutSegment(level, encoder.Finish(), &result.bytes);
+    result.part_sizes.push_back(result.bytes.size() - part_begin);
+    part_begin = result.bytes.size();
+  }
+  return result;
+}
+
+StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, const std::vector<LevelSteps>& steps,
+                                          const std::vector<QuantizedLevel>& levels) {
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<Topology> topologies, BuildTopologies(base, static_cast<int>(levels.size())));
+  return WriteRefinement(base, topologies, steps, levels);
+}
+
+}  // namespace lacerta

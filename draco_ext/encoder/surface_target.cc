@@ -1,0 +1,72 @@
+#include "encoder/surface_target.h"
+
+#include <utility>
+
+namespace lacerta {
+namespace {
+
+// A third of the area of the triangles around each vertex, as a share of the whole.
+std::vector<float> VertexAreas(const std::vector<Triangle>& triangles, const std::vector<Vec3f>& positions) {
+  std::vector<double> area(positions.size(), 0.0);
+  double total = 0;
+  for (const Triangle& t : triangles) {
+    const Vec3d a = Vec3Cast<double>(positions[t[0]]);
+    const double share = Norm(Cross(Vec3Cast<double>(positions[t[1]]) - a, Vec3Cast<double>(positions[t[2]]) - a));
+    for (const uint32_t v : t) area[v] += share;
+    total += 3 * share;
+  }
+  std::vector<float> result(area.size());
+  for (size_t v = 0; v < area.size(); ++v) result[v] = static_cast<float>(total > 0 ? area[v] / total : 0.0);
+  return result;
+}
+
+// Each midpoint hands half of its mass to either end of its edge.
+std::vector<float> LumpMasses(const Topology& coarse, const std::vector<float>& fine) {
+  std::vector<float> masses(fine.begin(), fine.begin() + coarse.num_vertices);
+  for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
+    for (const uint32_t v : coarse.edges[e]) masses[v] += 0.5f * fine[coarse.num_vertices + e];
+  }
+  return masses;
+}
+
+}  // namespace
+
+StencilSpread SpreadStencils(const Topology& topology, const StencilTable& table) {
+  StencilSpread spread;
+  spread.first.assign(topology.num_vertices + 1, 0);
+  for (uint32_t e = 0; e < topology.num_edges(); ++e) {
+    VisitStencil(topology, table, e, [&](uint32_t v, float) { ++spread.first[v + 1]; });
+  }
+  for (uint32_t v = 0; v < topology.num_vertices; ++v) spread.first[v + 1] += spread.first[v];
+  spread.edges.resize(spread.first.back());
+  spread.weights.resize(spread.first.back());
+  std::vector<uint32_t> next(spread.first.begin(), spread.first.end() - 1);
+  for (uint32_t e = 0; e < topology.num_edges(); ++e) {
+    VisitStencil(topology, table, e, [&](uint32_t v, float weight) {
+      spread.edges[next[v]] = e;
+      spread.weights[next[v]++] = weight;
+    });
+  }
+  return spread;
+}
+
+SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
+  std::vector<Topology> topologies = {BuildTopology(mesh.mesh.num_base_vertices, mesh.mesh.base_triangles).value()};
+  StencilTable stencils(topologies[0]);
+  std::vector<StencilSpread> spreads;
+  for (int level = 0; level < mesh.mesh.num_levels; ++level) {
+    spreads.push_back(SpreadStencils(topologies.back(), stencils));
+    topologies.push_back(Refine(topologies.back()));
+  }
+  std::vector<std::vector<float>> masses(topologies.size());
+  masses.back() = VertexAreas(topologies.back().triangles, mesh.mesh.positions);
+  for (size_t level = topologies.size() - 1; level > 0; --level) {
+    masses[level - 1] = LumpMasses(topologies[level - 1], masses[level]);
+  }
+  std::vector<Vec3f> points = mesh.mesh.positions;
+  std::copy(mesh.base_points.begin(), mesh.base_points.end(), points.begin());
+  return {std::move(topologies), std::move(stencils), std::move(spreads),  std::move(points),
+          mesh.surface_normals,  std::move(masses),   mesh.piercing};
+}
+
+}  // namespace lacerta

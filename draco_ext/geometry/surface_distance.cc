@@ -1,0 +1,228 @@
+#include "lacerta/surface_distance.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geometry/triangle_tree.h"
+
+namespace lacerta {
+
+// A mesh ready to be sampled and to be measured against.
+struct SurfaceDistanceMeter::Surface {
+  explicit Surface(const TriangleMesh& mesh) : tree(mesh), diagonal(BoundingBoxDiagonal(mesh)) {
+    const std::vector<uint32_t>& faces = tree.faces_in_tree_order();
+    corners.reserve(faces.size());
+    cumulated_area.reserve(faces.size());
+    double area = 0.0;
+    for (const uint32_t f : faces) {
+      const Triangle& t = mesh.triangles[f];
+      corners.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+      const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
+      area += Norm(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a));
+      cumulated_area.push_back(area);
+    }
+    // Every used vertex once, where the tree order first meets it.
+    std::vector<bool> seen(mesh.positions.size());
+    for (const uint32_t f : faces) {
+      for (const uint32_t v : mesh.triangles[f]) {
+        if (!seen[v]) vertices.push_back(mesh.positions[v]);
+        seen[v] = true;
+      }
+    }
+  }
+
+  double area() const { return cumulated_area.empty() ? 0.0 : cumulated_area.back(); }
+
+  TriangleTree tree;
+  // In tree order, so that consecutive samples are neighbours in space.
+  std::vector<std::array<Vec3f, 3>> corners;
+  std::vector<double> cumulated_area;  // doubled area of the triangles up to and with this one
+  std::vector<Vec3f> vertices;
+  double diagonal;
+};
+
+namespace {
+
+// Queries done in a row by one thread. Sums are taken per block and then in the order of the blocks.
+constexpr uint64_t kBlockSize = 2048;
+
+double Fraction(double x) { return x - std::floor(x); }
+
+// Walks through the samples of a surface in order. One sample falls into each of num_samples equal parts of the area;
+// its place in that part follows the golden ratio, so that no pattern of the triangles can keep step with the samples.
+// Within its triangle it follows the R2 sequence [Roberts 2018], whose points stay well spread both over one large
+// triangle that takes many samples in a row and over many small ones that take one sample each. The seed shifts all
+// three.
+class Sampler {
+ public:
+  Sampler(const std::vector<std::array<Vec3f, 3>>& corners, const std::vector<double>& cumulated_area,
+          const SurfaceDistanceOptions& options)
+      : corners_(corners), cumulated_area_(cumulated_area), options_(options) {}
+
+  Vec3f Sample(uint64_t i) {
+    constexpr double kStepPart = 0.6180339887498949;                            // 1 / (root of x^2 = x + 1)
+    constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;  // powers of 1 / (root of x^3 = x + 1)
+    constexpr double kSeedPart = 0.4142135623730950, kSeedU = 0.7320508075688772, kSeedV = 0.2360679774997897;
+    const double n = static_cast<double>(i), seed = static_cast<double>(options_.seed);
+    const double part = (n + Fraction(n * kStepPart + seed * kSeedPart)) / static_cast<double>(options_.num_samples);
+    const double target = std::min(part, 1.0) * cumulated_area_.back();
+    while (slot_ + 1 < cumulated_area_.size() && !(target < cumulated_area_[slot_])) Advance(target);
+    double u = Fraction(n * kStepU + seed * kSeedU + 0.5), v = Fraction(n * kStepV + seed * kSeedV + 0.5);
+    if (u + v > 1.0) {
+      u = 1.0 - u;
+      v = 1.0 - v;
+    }
+    const Vec3d a = Vec3Cast<double>(corners_[slot_][0]);
+    const Vec3d b = Vec3Cast<double>(corners_[slot_][1]), c = Vec3Cast<double>(corners_[slot_][2]);
+    return Vec3Cast<float>(a + (b - a) * u + (c - a) * v);
+  }
+
+ private:
+  // Moves on to the triangle that holds `target`: the next one mostly, else by bisection.
+  void Advance(double target) {
+    ++slot_;
+    if (target < cumulated_area_[slot_]) return;
+    const auto from = cumulated_area_.begin() + static_cast<std::ptrdiff_t>(slot_);
+    slot_ = static_cast<size_t>(std::upper_bound(from, cumulated_area_.end(), target) - cumulated_area_.begin());
+    slot_ = std::min(slot_, cumulated_area_.size() - 1);
+  }
+
+  const std::vector<std::array<Vec3f, 3>>& corners_;
+  const std::vector<double>& cumulated_area_;
+  const SurfaceDistanceOptions& options_;
+  size_t slot_ = 0;
+};
+
+struct BlockSum {
+  double sum2 = 0.0, max2 = 0.0;
+};
+
+// Sum and maximum of the squared distances to `tree` from the points 0 to count - 1. make_points() returns a function
+// from index to point, called with rising indices within a block.
+template <typename MakePoints>
+BlockSum SumOverBlocks(uint64_t count, const TriangleTree& tree, const MakePoints& make_points) {
+  std::vector<BlockSum> blocks((count + kBlockSize - 1) / kBlockSize);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, blocks.size(), 1), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t block = range.begin(); block != range.end(); ++block) {
+      auto point_at = make_points();
+      uint32_t hint = SurfacePoint::kNone;
+      const uint64_t first = block * kBlockSize, last = std::min(first + kBlockSize, count);
+      for (uint64_t i = first; i < last; ++i) {
+        const ClosestPointResult closest = tree.ClosestPointNear(point_at(i), hint);
+        hint = closest.point.face;
+        const double d2 = static_cast<double>(closest.squared_distance);
+        blocks[block].sum2 += d2;
+        blocks[block].max2 = std::max(blocks[block].max2, d2);
+      }
+    }
+  });
+  BlockSum total;
+  for (const BlockSum& block : blocks) {
+    total.sum2 += block.sum2;
+    total.max2 = std::max(total.max2, block.max2);
+  }
+  return total;
+}
+
+Status CheckMesh(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return InvalidData("the mesh has no triangles, so no surface to measure");
+  for (size_t f = 0; f < mesh.triangles.size(); ++f) {
+    for (const uint32_t v : mesh.triangles[f]) {
+      if (v >= mesh.positions.size()) {
+        return InvalidData("triangle " + std::to_string(f) + " uses vertex " + std::to_string(v) + " of " +
+                           std::to_string(mesh.positions.size()) + "; indices must be below the number of vertices");
+      }
+      const Vec3f& p = mesh.positions[v];
+      for (int k = 0; k < 3; ++k) {
+        if (!(std::fabs(p[k]) <= TriangleTree::kMaxCoordinate)) {
+          return InvalidData("vertex " + std::to_string(v) +
+                             " has a coordinate that is not finite or beyond 1e18; repair or rescale the mesh");
+        }
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+double BoundingBoxDiagonal(const TriangleMesh& mesh) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3d min{kInfinity, kInfinity, kInfinity}, max{-kInfinity, -kInfinity, -kInfinity};
+  for (const Triangle& t : mesh.triangles) {
+    if (std::max({t[0], t[1], t[2]}) >= mesh.positions.size()) continue;
+    for (const uint32_t v : t) {
+      for (int k = 0; k < 3; ++k) {
+        const double x = static_cast<double>(mesh.positions[v][k]);
+        min[k] = std::min(min[k], x);
+        max[k] = std::max(max[k], x);
+      }
+    }
+  }
+  return min.x <= max.x ? Norm(max - min) : 0.0;
+}
+
+double Psnr(double distance, double diagonal) {
+  if (std::isnan(distance) || std::isnan(diagonal)) return std::numeric_limits<double>::quiet_NaN();
+  if (distance <= 0.0) return kMaxPsnr;
+  if (diagonal <= 0.0) return -std::numeric_limits<double>::infinity();
+  return std::min(20.0 * std::log10(diagonal / distance), kMaxPsnr);
+}
+
+double DistanceOfPsnr(double psnr, double diagonal) { return diagonal * std::pow(10.0, -psnr / 20.0); }
+
+SurfaceDistanceMeter::SurfaceDistanceMeter(std::unique_ptr<const Surface> original) : original_(std::move(original)) {}
+SurfaceDistanceMeter::SurfaceDistanceMeter(SurfaceDistanceMeter&&) noexcept = default;
+SurfaceDistanceMeter& SurfaceDistanceMeter::operator=(SurfaceDistanceMeter&&) noexcept = default;
+SurfaceDistanceMeter::~SurfaceDistanceMeter() = default;
+
+StatusOr<SurfaceDistanceMeter> SurfaceDistanceMeter::Create(const TriangleMesh& original) {
+  LACERTA_RETURN_IF_ERROR(CheckMesh(original).WithContext("original"));
+  auto surface = std::make_unique<const Surface>(original);
+  if (!(surface->area() > 0.0))
+    return InvalidData("original: all triangles are degenerate, there is no area to sample");
+  return SurfaceDistanceMeter(std::move(surface));
+}
+
+StatusOr<SurfaceDistance> SurfaceDistanceMeter::Measure(const TriangleMesh& mesh,
+                                                        const SurfaceDistanceOptions& options) const {
+  if (options.num_samples < 1 || options.num_samples > SurfaceDistanceOptions::kMaxSamples) {
+    return InvalidArgument("num_samples is " + std::to_string(options.num_samples) + "; it must be from 1 to " +
+                           std::to_string(SurfaceDistanceOptions::kMaxSamples));
+  }
+  LACERTA_RETURN_IF_ERROR(CheckMesh(mesh).WithContext("measured mesh"));
+  const Surface other(mesh);
+  if (!(other.area() > 0.0)) {
+    return InvalidData("measured mesh: all triangles are degenerate, there is no area to sample");
+  }
+  const auto measure = [&options](const Surface& from, const Surface& to) {
+    const BlockSum samples = SumOverBlocks(options.num_samples, to.tree, [&] {
+      return [sampler = Sampler(from.corners, from.cumulated_area, options)](uint64_t i) mutable {
+        return sampler.Sample(i);
+      };
+    });
+    const BlockSum vertices = SumOverBlocks(from.vertices.size(), to.tree,
+                                            [&from] { return [&from](uint64_t i) { return from.vertices[i]; }; });
+    return OneSidedDistance{std::sqrt(samples.sum2 / static_cast<double>(options.num_samples)),
+                            std::sqrt(std::max(samples.max2, vertices.max2))};
+  };
+  return SurfaceDistance{measure(*original_, other), measure(other, *original_)};
+}
+
+double SurfaceDistanceMeter::diagonal() const { return original_->diagonal; }
+
+StatusOr<SurfaceDistance> MeasureSurfaceDistance(const TriangleMesh& original, const TriangleMesh& mesh,
+                                                 const SurfaceDistanceOptions& options) {
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(original));
+  return meter.Measure(mesh, options);
+}
+
+}  // namespace lacerta

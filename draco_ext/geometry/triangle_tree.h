@@ -1,0 +1,96 @@
+// Closest points and line hits on a triangle mesh through a bounding volume hierarchy.
+#ifndef LACERTA_GEOMETRY_TRIANGLE_TREE_H_
+#define LACERTA_GEOMETRY_TRIANGLE_TREE_H_
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "lacerta/mesh.h"
+
+namespace lacerta {
+
+// A point on a face of the mesh: barycentric[k] belongs to corner k of the face; they are >= 0 and add up to 1.
+struct SurfacePoint {
+  static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+  uint32_t face = kNone;  // index into TriangleMesh::triangles; kNone: there is no such point
+  std::array<float, 3> barycentric{};
+  Vec3f position;
+};
+
+struct ClosestPointResult {
+  SurfacePoint point;
+  float squared_distance = std::numeric_limits<float>::infinity();
+};
+
+struct LineHit {
+  SurfacePoint point;  // position = origin + t * direction
+  float t = 0.0f;      // in lengths of the direction
+};
+
+// A hierarchy of axis-aligned boxes, four to a node, split by the binned surface area heuristic [Wald 2007]. Queries
+// are const, need no memory of their own and may run in many threads at once.
+//
+// The tree copies the triangles, so the mesh may go away. Faces that no query can meet are left out: an index out of
+// range, or a coordinate that is not finite or beyond kMaxCoordinate. Degenerate faces stay: they are the segment or
+// point that they look like to ClosestPoint, and invisible to IntersectLine.
+class TriangleTree {
+ public:
+  // Squares of larger coordinates would leave the range of float.
+  static constexpr float kMaxCoordinate = 1e18f;
+
+  explicit TriangleTree(const TriangleMesh& mesh);
+
+  // The point of the mesh closest to p and not farther than max_squared_distance from it; face == kNone where there is
+  // none, or where p is not finite or beyond kMaxCoordinate. Distances are computed in double. Of several closest
+  // points, on a shared edge say, any may be returned, but the same call returns the same one.
+  ClosestPointResult ClosestPoint(const Vec3f& p,
+                                  float max_squared_distance = std::numeric_limits<float>::infinity()) const;
+
+  // The same without a limit. `hint` is a face thought to be near p, such as the one found for a neighbour of p: its
+  // distance bounds the search from the start. It may be any number: what is no face of the tree is no hint.
+  ClosestPointResult ClosestPointNear(const Vec3f& p, uint32_t hint) const;
+
+  // Appends to *hits, in no particular order, where the line origin + t * direction meets the mesh with t_min <= t <=
+  // t_max, whichever way the faces look. Watertight [Woop et al. 2013]: a line through a shared edge or vertex hits at
+  // least one, and possibly all, of the faces there. Faces parallel to the line are not hit. direction: not zero, of
+  // any length; else nothing is appended, nor where a number is not finite (t_min and t_max may be infinite).
+  void IntersectLine(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max,
+                     std::vector<LineHit>* hits) const;
+
+  // The faces in the order of the tree, in which neighbours in the list are mostly neighbours in space. Without those
+  // left out.
+  const std::vector<uint32_t>& faces_in_tree_order() const { return faces_; }
+
+ private:
+  static constexpr int kWidth = 4;  // children of a node
+
+  // Boxes of the children as structure of arrays, so that the compiler tests four at once.
+  struct alignas(64) Node {
+    float min[3][kWidth];
+    float max[3][kWidth];
+    uint32_t child[kWidth];  // a node, or the first slot of a leaf
+    uint32_t count[kWidth];  // 0: a node, else the number of triangles in the leaf
+  };
+  struct Corners {
+    Vec3f a, b, c;
+  };
+  struct Reference;  // a face while the tree is built
+  struct Search;     // what a closest point query has found so far
+
+  uint32_t BuildNode(Reference* first, Reference* last, const Reference* all, int depth);
+  void TestSlot(uint32_t slot, Search* search) const;
+  ClosestPointResult Finish(const Search& search) const;
+  void Traverse(Search* search) const;
+
+  std::vector<Node> nodes_;         // the first is the root; empty when there is no triangle
+  std::vector<Corners> triangles_;  // per slot
+  std::vector<uint32_t> faces_;     // per slot
+  std::vector<uint32_t> slots_;     // per face of the mesh; kNone for those left out
+  float padding_ = 0.0f;  // by which every box is larger than what it holds: a few ulps of the largest coordinate
+};
+
+}  // namespace lacerta
+
+#endif  // LACERTA_GEOMETRY_TRIANGLE_TREE_H_

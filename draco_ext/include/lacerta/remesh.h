@@ -1,0 +1,32 @@
+// Remeshing of an irregular surface to a normal mesh [Guskov et al. 2000].
+#ifndef LACERTA_REMESH_H_
+#define LACERTA_REMESH_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "lacerta/mesh.h"
+
+namespace lacerta {
+
+// How the position of a fine vertex was found.
+enum class PiercingKind : uint8_t {
+  kNormal,      // where the normal line through the predicted position pierces the surface
+  kClosest,     // the surface point closest to the predicted position: piercing was not sound
+  kParametric,  // the surface point at the middle of its edge in the parametrization: nothing else was sound
+};
+
+// A remeshed surface: the semi-regular mesh with what the encoder wants to know about the input at its vertices.
+struct NormalMesh {
+  SemiRegularMesh mesh;
+  std::vector<Vec3f> base_points;       // #V0, points of the input that the base vertices stand for
+  std::vector<Vec3f> surface_normals;   // #V, unit normal of the input at each vertex
+  std::vector<PiercingKind> piercing;   // #V - #V0, of the vertices above the base, in order
+};
+
+// Share of the vertices above the base that lie on their normal line; 1 where there are none.
+double NormalShare(const NormalMesh& mesh);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_REMESH_H_

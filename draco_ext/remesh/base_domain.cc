@@ -1,0 +1,123 @@
+#include "remesh/base_domain.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace lacerta {
+
+BaseDomain::BaseDomain(const CollapseHistory& history, uint32_t time) : history_(history), time_(time) {
+  history_face_ = history.FacesAt(time);
+  rotation_.assign(history_face_.size(), 0);
+  for (const uint32_t f : history_face_) {
+    for (const uint32_t v : history.face(f)) input_vertex_.push_back(v);
+  }
+  std::sort(input_vertex_.begin(), input_vertex_.end());
+  input_vertex_.erase(std::unique(input_vertex_.begin(), input_vertex_.end()), input_vertex_.end());
+  for (const uint32_t f : history_face_) {
+    Triangle t = history.face(f);
+    for (uint32_t& v : t) {
+      v = static_cast<uint32_t>(std::lower_bound(input_vertex_.begin(), input_vertex_.end(), v) - input_vertex_.begin());
+    }
+    triangles_.push_back(t);
+  }
+  BuildTables();
+}
+
+void BaseDomain::BuildTables() {
+  base_face_.assign(history_.num_faces(), kNone);
+  for (uint32_t f = 0; f < history_face_.size(); ++f) base_face_[history_face_[f]] = f;
+  topology_ = BuildTopology(num_vertices(), triangles_).value();  // a closed manifold stays one through every collapse
+}
+
+void BaseDomain::Reorder(const std::vector<uint32_t>& new_vertex, const std::vector<Triangle>& triangles) {
+  std::map<Triangle, uint32_t> old_face;  // by its vertices in new numbers, the smallest first
+  const auto canonical = [](Triangle t) {
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+  };
+  for (uint32_t f = 0; f < triangles_.size(); ++f) {
+    Triangle t = triangles_[f];
+    for (uint32_t& v : t) v = new_vertex[v];
+    old_face[canonical(t)] = f;
+  }
+  std::vector<uint32_t> history_face;
+  std::vector<uint8_t> rotation;
+  for (const Triangle& t : triangles) {
+    const uint32_t old = old_face.at(canonical(t));
+    int shift = 0;
+    while (new_vertex[triangles_[old][shift]] != t[0]) ++shift;
+    history_face.push_back(history_face_[old]);
+    rotation.push_back(static_cast<uint8_t>((rotation_[old] + shift) % 3));
+  }
+  std::vector<uint32_t> input_vertex(input_vertex_.size());
+  for (uint32_t v = 0; v < input_vertex_.size(); ++v) input_vertex[new_vertex[v]] = input_vertex_[v];
+  triangles_ = triangles;
+  input_vertex_ = std::move(input_vertex);
+  history_face_ = std::move(history_face);
+  rotation_ = std::move(rotation);
+  BuildTables();
+}
+
+DomainPoint BaseDomain::FromInput(const DomainPoint& on_input) const {
+  const DomainPoint p = history_.Forward(on_input, time_);
+  const uint32_t face = base_face_[p.face];
+  DomainPoint result{face, {}};
+  for (int k = 0; k < 3; ++k) result.barycentric[k] = p.barycentric[(k + rotation_[face]) % 3];
+  return result;
+}
+
+DomainPoint BaseDomain::ToInput(const DomainPoint& on_base) const {
+  DomainPoint p{history_face_[on_base.face], {}};
+  for (int k = 0; k < 3; ++k) p.barycentric[(k + rotation_[on_base.face]) % 3] = on_base.barycentric[k];
+  return history_.Backward(p);
+}
+
+std::optional<ChartPoint> BaseDomain::ToChart(uint32_t center, const DomainPoint& point) const {
+  if (point.face == center) return point.barycentric;
+  for (int k = 0; k < 3; ++k) {  // a base vertex belongs to all of its faces
+    if (point.barycentric[k] != 1.0) continue;
+    const Triangle& t = triangles_[center];
+    const auto corner = std::find(t.begin(), t.end(), triangles_[point.face][k]);
+    if (corner == t.end()) return std::nullopt;
+    ChartPoint q;
+    q[static_cast<int>(corner - t.begin())] = 1;
+    return q;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const uint32_t edge = topology_.face_edges[center][k];
+    if (FaceAcross(topology_, center, edge) != point.face) continue;
+    // The apex of the neighbor is the reflection (-1, 1, 1) of corner k, with the -1 at k.
+    const int apex = EdgeCorner(topology_, point.face, edge);
+    const double gamma = point.barycentric[apex];
+    ChartPoint q;
+    q[k] = -gamma;
+    // Opposite orientation along the shared edge: corner apex+1 of the neighbor is corner k+2 of the center.
+    q[(k + 2) % 3] = point.barycentric[(apex + 1) % 3] + gamma;
+    q[(k + 1) % 3] = point.barycentric[(apex + 2) % 3] + gamma;
+    return q;
+  }
+  return std::nullopt;
+}
+
+std::optional<DomainPoint> BaseDomain::FromChart(uint32_t center, const ChartPoint& point) const {
+  constexpr double kSlack = 1e-9;
+  if (point.x >= -kSlack && point.y >= -kSlack && point.z >= -kSlack) return DomainPoint{center, point};
+  for (int k = 0; k < 3; ++k) {
+    if (point[k] >= 0) continue;
+    const double gamma = -point[k];
+    const double w1 = point[(k + 1) % 3] - gamma, w2 = point[(k + 2) % 3] - gamma;
+    if (w1 < -kSlack || w2 < -kSlack) continue;
+    const uint32_t edge = topology_.face_edges[center][k];
+    const uint32_t face = FaceAcross(topology_, center, edge);
+    const int apex = EdgeCorner(topology_, face, edge);
+    DomainPoint result{face, {}};
+    result.barycentric[apex] = gamma;
+    result.barycentric[(apex + 1) % 3] = w2;
+    result.barycentric[(apex + 2) % 3] = w1;
+    return result;
+  }
+  return std::nullopt;
+}
+
+}  // namespace lacerta

@@ -1,0 +1,58 @@
+// A base mesh as the parameter domain of the input surface: one base mesh of the collapse history, with points that move
+// freely across its edges.
+#ifndef LACERTA_REMESH_BASE_DOMAIN_H_
+#define LACERTA_REMESH_BASE_DOMAIN_H_
+
+#include <optional>
+#include <vector>
+
+#include "common/subdivision.h"
+#include "lacerta/mesh.h"
+#include "remesh/collapse_history.h"
+
+namespace lacerta {
+
+// A point of the domain in the chart of one base face: barycentric coordinates that go on affinely over the three faces
+// across its edges, as if all four were equilateral and unfolded into the plane.
+using ChartPoint = Vec3d;
+
+class BaseDomain {
+ public:
+  // The base mesh after the first `time` collapses of `history`, which must outlive the domain.
+  BaseDomain(const CollapseHistory& history, uint32_t time);
+
+  uint32_t num_vertices() const { return static_cast<uint32_t>(input_vertex_.size()); }
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+  // Input vertex at which a base vertex stands.
+  uint32_t input_vertex(uint32_t v) const { return input_vertex_[v]; }
+  const Topology& topology() const { return topology_; }
+
+  // Renumbers vertices and faces: base vertex v becomes new_vertex[v], and `triangles` (in new numbers) gives the new order
+  // and rotation of the faces.
+  void Reorder(const std::vector<uint32_t>& new_vertex, const std::vector<Triangle>& triangles);
+
+  // Point of the domain (face: base face) of a point on a face of the input, and back.
+  DomainPoint FromInput(const DomainPoint& on_input) const;
+  DomainPoint ToInput(const DomainPoint& on_base) const;
+
+  // The chart coordinates of a domain point around base face `center`; none where it lies beyond the neighboring faces.
+  std::optional<ChartPoint> ToChart(uint32_t center, const DomainPoint& point) const;
+  // The inverse; none where the chart point lies outside of the four faces.
+  std::optional<DomainPoint> FromChart(uint32_t center, const ChartPoint& point) const;
+
+ private:
+  void BuildTables();
+
+  const CollapseHistory& history_;
+  uint32_t time_;
+  std::vector<Triangle> triangles_;          // #F0 base vertices
+  std::vector<uint32_t> input_vertex_;       // #V0
+  std::vector<uint32_t> history_face_;       // #F0
+  std::vector<uint8_t> rotation_;            // corner of the history face at corner 0 of the base face
+  std::vector<uint32_t> base_face_;          // by history face, or kNone
+  Topology topology_;
+};
+
+}  // namespace lacerta
+
+#endif  // LACERTA_REMESH_BASE_DOMAIN_H_

@@ -1,0 +1,107 @@
+#include "lacerta/clean.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <tuple>
+
+#include "common/subdivision.h"
+
+namespace lacerta {
+namespace {
+
+Status CheckInput(const TriangleMesh& mesh) {
+  if (mesh.positions.size() >= kNone) return Unsupported("more than 4,294,967,294 vertices: cut the mesh into parts");
+  if (mesh.triangles.size() > (1u << 30)) return Unsupported("more than 1,073,741,824 triangles: cut the mesh into parts");
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3f& p = mesh.positions[v];
+    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
+    return InvalidData("position of vertex " + std::to_string(v) + " is not finite: repair the mesh first");
+  }
+  for (size_t f = 0; f < mesh.triangles.size(); ++f) {
+    for (const uint32_t v : mesh.triangles[f]) {
+      if (v < mesh.positions.size()) continue;
+      return InvalidData("triangle " + std::to_string(f) + " refers to vertex " + std::to_string(v) + " of " +
+                         std::to_string(mesh.positions.size()));
+    }
+  }
+  return Status();
+}
+
+// For each vertex the first one at the same position.
+std::vector<uint32_t> FirstAtPosition(const std::vector<Vec3f>& positions) {
+  std::vector<uint32_t> order(positions.size()), first(positions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto key = [&](uint32_t v) { return std::tie(positions[v].x, positions[v].y, positions[v].z); };
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    const auto ka = key(a), kb = key(b);
+    return ka < kb || (ka == kb && a < b);
+  });
+  for (size_t i = 0; i < order.size(); ++i) {
+    first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+  }
+  return first;
+}
+
+// True for triangles that repeat an earlier one, whichever corner they start at.
+std::vector<bool> RepeatedTriangles(const std::vector<Triangle>& triangles) {
+  const auto rotated = [&](uint32_t f) {
+    Triangle t = triangles[f];
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+  };
+  std::vector<std::pair<Triangle, uint32_t>> keyed(triangles.size());
+  for (uint32_t f = 0; f < triangles.size(); ++f) keyed[f] = {rotated(f), f};
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<bool> repeated(triangles.size(), false);
+  for (size_t i = 1; i < keyed.size(); ++i) repeated[keyed[i].second] = keyed[i].first == keyed[i - 1].first;
+  return repeated;
+}
+
+}  // namespace
+
+StatusOr<CleanedMesh> Clean(const TriangleMesh& mesh) {
+  LACERTA_RETURN_IF_ERROR(CheckInput(mesh));
+  CleanedMesh result;
+  const std::vector<uint32_t> first = FirstAtPosition(mesh.positions);
+  std::vector<Triangle> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles) {
+    const Triangle welded = {first[t[0]], first[t[1]], first[t[2]]};
+    if (welded[0] == welded[1] || welded[1] == welded[2] || welded[2] == welded[0]) {
+      ++result.report.degenerate_triangles;
+    } else {
+      triangles.push_back(welded);
+    }
+  }
+  const std::vector<bool> repeated = RepeatedTriangles(triangles);
+  std::vector<bool> used(mesh.positions.size(), false), referenced(mesh.positions.size(), false);
+  for (const Triangle& t : mesh.triangles) {
+    for (const uint32_t v : t) referenced[v] = true;
+  }
+  for (size_t f = 0; f < triangles.size(); ++f) {
+    if (repeated[f]) {
+      ++result.report.duplicate_triangles;
+      continue;
+    }
+    result.mesh.triangles.push_back(triangles[f]);
+    for (const uint32_t v : triangles[f]) used[v] = true;
+  }
+  if (result.mesh.triangles.empty()) return InvalidData("the mesh has no triangle left after cleaning");
+
+  std::vector<uint32_t> new_index(mesh.positions.size(), kNone);
+  for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
+    if (first[v] != v && referenced[v]) ++result.report.welded_vertices;
+    if (used[v]) {
+      new_index[v] = static_cast<uint32_t>(result.mesh.positions.size());
+      result.mesh.positions.push_back(mesh.positions[v]);
+    } else if (first[v] == v || !referenced[v]) {
+      ++result.report.isolated_vertices;
+    }
+  }
+  for (Triangle& t : result.mesh.triangles) t = {new_index[t[0]], new_index[t[1]], new_index[t[2]]};
+  return result;
+}
+
+}  // namespace lacerta

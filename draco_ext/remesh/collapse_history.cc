@@ -1,0 +1,123 @@
+#include "remesh/collapse_history.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lacerta {
+namespace {
+
+double CrossProduct(const Vec2d& a, const Vec2d& b) { return a.x * b.y - a.y * b.x; }
+Vec2d Minus(const Vec2d& a, const Vec2d& b) { return {a.x - b.x, a.y - b.y}; }
+
+// Barycentric weights of q in the triangle (a, b, c); weights below zero say that q lies outside.
+Vec3d BarycentricIn(const Vec2d& q, const Vec2d& a, const Vec2d& b, const Vec2d& c) {
+  const double area = CrossProduct(Minus(b, a), Minus(c, a));
+  if (!(area > 0)) return {-std::numeric_limits<double>::max(), 0, 0};
+  const double wb = CrossProduct(Minus(q, a), Minus(c, a)) / area;
+  const double wc = CrossProduct(Minus(b, a), Minus(q, a)) / area;
+  return {1 - wb - wc, wb, wc};
+}
+
+double MinWeight(const Vec3d& w) { return std::min({w.x, w.y, w.z}); }
+
+// Rounding may put a point a hair outside of every triangle: back onto the nearest one.
+Vec3d ClampWeights(Vec3d w) {
+  w = {std::max(w.x, 0.0), std::max(w.y, 0.0), std::max(w.z, 0.0)};
+  const double sum = w.x + w.y + w.z;
+  return sum > 0 ? w * (1 / sum) : Vec3d{1, 0, 0};
+}
+
+}  // namespace
+
+CollapseHistory::CollapseHistory(const TriangleMesh& mesh)
+    : faces_(mesh.triangles),
+      created_by_(mesh.triangles.size(), kNone),
+      destroyed_by_(mesh.triangles.size(), kNone) {}
+
+uint32_t CollapseHistory::Append(uint32_t removed, const std::vector<uint32_t>& ring, const std::vector<Vec2d>& chart,
+                                 const std::vector<uint32_t>& old_faces, int kept) {
+  const uint32_t time = num_collapses();
+  const uint32_t first_new = static_cast<uint32_t>(faces_.size());
+  const size_t k = ring.size();
+  collapses_.push_back({ring_positions_.size(), first_new, static_cast<uint16_t>(k), static_cast<uint16_t>(kept), removed});
+  ring_positions_.insert(ring_positions_.end(), chart.begin(), chart.end());
+  old_faces_.insert(old_faces_.end(), old_faces.begin(), old_faces.end());
+  for (const uint32_t f : old_faces) {
+    destroyed_by_[f] = time;
+    rotations_.push_back(faces_[f][0] == removed ? 0 : faces_[f][1] == removed ? 1 : 2);
+  }
+  for (size_t i = kept + 1; i < kept + k - 1; ++i) {
+    faces_.push_back({ring[kept], ring[i % k], ring[(i + 1) % k]});
+    created_by_.push_back(time);
+    destroyed_by_.push_back(kNone);
+  }
+  return first_new;
+}
+
+std::vector<uint32_t> CollapseHistory::FacesAt(uint32_t time) const {
+  std::vector<uint32_t> alive;
+  for (uint32_t f = 0; f < faces_.size(); ++f) {
+    const bool born = created_by_[f] == kNone || created_by_[f] < time;
+    if (born && destroyed_by_[f] >= time) alive.push_back(f);  // kNone is the largest time of all
+  }
+  return alive;
+}
+
+DomainPoint CollapseHistory::ForwardOnce(const DomainPoint& point, const Collapse& c) const {
+  const Vec2d* ring = &ring_positions_[c.first_ring];
+  const uint32_t* old = &old_faces_[c.first_ring];
+  const int k = c.valence;
+  const int i = static_cast<int>(std::find(old, old + k, point.face) - old);
+  const int r = rotations_[c.first_ring + i];
+  const double w1 = point.barycentric[(r + 1) % 3], w2 = point.barycentric[(r + 2) % 3];
+  const Vec2d &p1 = ring[i], &p2 = ring[(i + 1) % k];
+  const Vec2d q = {w1 * p1.x + w2 * p2.x, w1 * p1.y + w2 * p2.y};  // v is the origin
+  double best = -std::numeric_limits<double>::max();
+  DomainPoint result{c.first_new_face, {1, 0, 0}};
+  for (int m = 0; m < k - 2; ++m) {
+    const Vec3d w = BarycentricIn(q, ring[c.kept], ring[(c.kept + 1 + m) % k], ring[(c.kept + 2 + m) % k]);
+    if (MinWeight(w) <= best) continue;
+    best = MinWeight(w);
+    result = {c.first_new_face + static_cast<uint32_t>(m), w};
+    if (best >= 0) break;
+  }
+  result.barycentric = ClampWeights(result.barycentric);
+  return result;
+}
+
+DomainPoint CollapseHistory::BackwardOnce(const DomainPoint& point, const Collapse& c) const {
+  const Vec2d* ring = &ring_positions_[c.first_ring];
+  const int k = c.valence;
+  const int m = static_cast<int>(point.face - c.first_new_face);
+  const Vec2d &a = ring[c.kept], &b = ring[(c.kept + 1 + m) % k], &d = ring[(c.kept + 2 + m) % k];
+  const Vec3d& w = point.barycentric;
+  const Vec2d q = {w.x * a.x + w.y * b.x + w.z * d.x, w.x * a.y + w.y * b.y + w.z * d.y};
+  double best = -std::numeric_limits<double>::max();
+  int best_i = 0;
+  Vec3d best_weights{1, 0, 0};
+  for (int i = 0; i < k; ++i) {
+    const Vec3d weights = BarycentricIn(q, Vec2d{}, ring[i], ring[(i + 1) % k]);
+    if (MinWeight(weights) <= best) continue;
+    best = MinWeight(weights);
+    best_i = i;
+    best_weights = weights;
+    if (best >= 0) break;
+  }
+  best_weights = ClampWeights(best_weights);
+  DomainPoint result{old_faces_[c.first_ring + best_i], {}};
+  const int r = rotations_[c.first_ring + best_i];
+  for (int corner = 0; corner < 3; ++corner) result.barycentric[(r + corner) % 3] = best_weights[corner];
+  return result;
+}
+
+DomainPoint CollapseHistory::Forward(DomainPoint point, uint32_t time) const {
+  while (destroyed_by_[point.face] < time) point = ForwardOnce(point, collapses_[destroyed_by_[point.face]]);
+  return point;
+}
+
+DomainPoint CollapseHistory::Backward(DomainPoint point) const {
+  while (created_by_[point.face] != kNone) point = BackwardOnce(point, collapses_[created_by_[point.face]]);
+  return point;
+}
+
+}  // namespace lacerta

@@ -1,0 +1,73 @@
+// The sequence of half-edge collapses that leads from a closed mesh to its coarsest base mesh, kept as a chain of 2-D charts
+// so that every point of the mesh maps to every intermediate base mesh and back: the parametrization of
+// [Lee et al. 1998] (MAPS), one chart per removed vertex, exact in both directions.
+//
+// Faces are numbered for life: those of the input first, then the ones that each collapse makes. A collapse removes vertex v
+// with the ring p_0 .. p_{k-1} (counterclockwise) in favor of p_j: the k old faces (v, p_i, p_{i+1}) give way to the k - 2
+// new faces (p_j, p_i, p_{i+1}), i = j+1 .. j+k-2. Both sets cover one polygon of the chart, which has v at its origin.
+#ifndef LACERTA_REMESH_COLLAPSE_HISTORY_H_
+#define LACERTA_REMESH_COLLAPSE_HISTORY_H_
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/subdivision.h"
+#include "lacerta/mesh.h"
+
+namespace lacerta {
+
+// A point on a face: weights of the face's three vertices, which sum to one.
+struct DomainPoint {
+  uint32_t face = kNone;
+  Vec3d barycentric;
+};
+
+// A point of a chart.
+struct Vec2d {
+  double x = 0, y = 0;
+};
+
+class CollapseHistory {
+ public:
+  explicit CollapseHistory(const TriangleMesh& mesh);
+
+  // Appends a collapse. ring: #k vertices, chart: #k their chart positions, old_faces: #k with old_faces[i] = (v, p_i, p_{i+1})
+  // in any rotation. Returns the number of the first of the k - 2 new faces.
+  uint32_t Append(uint32_t removed, const std::vector<uint32_t>& ring, const std::vector<Vec2d>& chart,
+                  const std::vector<uint32_t>& old_faces, int kept);
+
+  uint32_t num_collapses() const { return static_cast<uint32_t>(collapses_.size()); }
+  uint32_t num_faces() const { return static_cast<uint32_t>(faces_.size()); }  // of all times
+  const Triangle& face(uint32_t f) const { return faces_[f]; }
+
+  // Faces that exist after the first `time` collapses, in increasing number.
+  std::vector<uint32_t> FacesAt(uint32_t time) const;
+
+  // The same point on a face that exists after the first `time` collapses, from an earlier face.
+  DomainPoint Forward(DomainPoint point, uint32_t time) const;
+  // The same point on a face of the input mesh, from any face.
+  DomainPoint Backward(DomainPoint point) const;
+
+ private:
+  struct Collapse {
+    size_t first_ring;       // into ring_positions_, old_faces_, rotations_
+    uint32_t first_new_face;
+    uint16_t valence;        // k
+    uint16_t kept;           // j
+    uint32_t removed;
+  };
+  DomainPoint ForwardOnce(const DomainPoint& point, const Collapse& c) const;
+  DomainPoint BackwardOnce(const DomainPoint& point, const Collapse& c) const;
+
+  std::vector<Triangle> faces_;
+  std::vector<uint32_t> created_by_, destroyed_by_;  // per face: collapse, or kNone
+  std::vector<Collapse> collapses_;
+  std::vector<Vec2d> ring_positions_;
+  std::vector<uint32_t> old_faces_;
+  std::vector<uint8_t> rotations_;  // corner of the old face at which v stands
+};
+
+}  // namespace lacerta
+
+#endif  // LACERTA_REMESH_COLLAPSE_HISTORY_H_

@@ -1,0 +1,26 @@
+// Simplification of a closed manifold to its coarsest base mesh by half-edge collapses in order of quadric error
+// [Garland, Heckbert 1997], keeping the parametrization of the input over every intermediate mesh [Lee et al. 1998].
+#ifndef LACERTA_REMESH_DECIMATE_H_
+#define LACERTA_REMESH_DECIMATE_H_
+
+#include <cstdint>
+#include <functional>
+
+#include "lacerta/mesh.h"
+#include "remesh/collapse_history.h"
+
+namespace lacerta {
+
+struct DecimateOptions {
+  uint32_t target_vertices = 16;   // stop there; earlier where no collapse is sound any more
+  int max_valence = 12;            // of a base vertex
+  double min_normal_cosine = 0.2;  // between a new triangle and the one it replaces
+};
+
+// mesh: closed, edge-manifold, oriented, one fan per vertex (BuildTopology succeeds and there is no border).
+// A collapse is sound when it keeps the topology (link condition), turns no triangle over and its chart has no fold.
+CollapseHistory Decimate(const TriangleMesh& mesh, const DecimateOptions& options);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_REMESH_DECIMATE_H_

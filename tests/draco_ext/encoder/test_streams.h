@@ -1,0 +1,77 @@
+// Small base meshes and coefficients for the tests of the stream.
+#ifndef LACERTA_TESTS_DRACO_EXT_ENCODER_TEST_STREAMS_H_
+#define LACERTA_TESTS_DRACO_EXT_ENCODER_TEST_STREAMS_H_
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "common/coefficient_sets.h"
+#include "common/subdivision.h"
+#include "lacerta/decoder.h"
+
+namespace lacerta::testing {
+
+inline BaseMesh Octahedron() {
+  return {1.0f / 64,
+          {{{64, 0, 0}}, {{-64, 0, 0}}, {{0, 64, 0}}, {{0, -64, 0}}, {{0, 0, 64}}, {{0, 0, -64}}},
+          {{{0, 2, 4}}, {{2, 1, 4}}, {{1, 3, 4}}, {{3, 0, 4}}, {{2, 0, 5}}, {{1, 2, 5}}, {{3, 1, 5}}, {{0, 3, 5}}}};
+}
+
+// A torus of `around` x `across` quads, each cut in two: all vertices regular.
+inline BaseMesh Torus(uint32_t around, uint32_t across) {
+  BaseMesh base{1.0f / 256, {}, {}};
+  constexpr double kTwoPi = 6.283185307179586;
+  for (uint32_t i = 0; i < around; ++i) {
+    for (uint32_t j = 0; j < across; ++j) {
+      const double u = kTwoPi * i / around, v = kTwoPi * j / across, r = 2 + std::cos(v);
+      base.lattice.push_back({{static_cast<int32_t>(std::lround(256 * r * std::cos(u))),
+                               static_cast<int32_t>(std::lround(256 * r * std::sin(u))),
+                               static_cast<int32_t>(std::lround(256 * std::sin(v)))}});
+      const auto at = [&](uint32_t a, uint32_t b) { return (a % around) * across + b % across; };
+      base.triangles.push_back({{at(i, j), at(i + 1, j), at(i + 1, j + 1)}});
+      base.triangles.push_back({{at(i, j), at(i + 1, j + 1), at(i, j + 1)}});
+    }
+  }
+  return base;
+}
+
+// A square of two triangles: border edges and border vertices only.
+inline BaseMesh Square() {
+  return {0.5f, {{{0, 0, 0}}, {{2, 0, 0}}, {{2, 2, 0}}, {{0, 2, 0}}}, {{{0, 1, 2}}, {{0, 2, 3}}}};
+}
+
+struct Coefficients {
+  std::vector<LevelSteps> steps;
+  std::vector<QuantizedLevel> levels;
+};
+
+// Two-sided geometric coefficients whose scale falls from level to level; the tangential set of level 2 is not coded.
+inline Coefficients RandomCoefficients(const BaseMesh& base, int num_levels, uint32_t seed, double scale = 6.0) {
+  std::mt19937 random(seed);
+  Coefficients result;
+  Topology t = BuildTopology(static_cast<uint32_t>(base.lattice.size()), base.triangles).value();
+  for (int level = 1; level <= num_levels; ++level, scale /= 2) {
+    const LevelSteps steps = {RoundStep(0.01f / static_cast<float>(level)), level == 2 ? 0.0f : RoundStep(0.02f), 3,
+                              static_cast<uint8_t>(level == 2 ? 0 : 5)};
+    QuantizedLevel q;
+    const auto draw = [&](double mean) {
+      const double magnitude = std::floor(-mean * std::log(1 - static_cast<double>(random()) / 4294967296.0));
+      return static_cast<int32_t>(random() & 1 ? magnitude : -magnitude);
+    };
+    for (uint32_t e = 0; e < t.num_edges(); ++e) {
+      q.normal.push_back(draw(scale));
+      for (int k = 0; k < 2; ++k) q.tangential.push_back(level == 2 ? 0 : draw(scale / 6));
+    }
+    result.steps.push_back(steps);
+    result.levels.push_back(std::move(q));
+    t = Refine(t);
+  }
+  return result;
+}
+
+}  // namespace lacerta::testing
+
+#endif  // LACERTA_TESTS_DRACO_EXT_ENCODER_TEST_STREAMS_H_
