@@ -122,7 +122,7 @@ Bytes FormatGlb(const GltfDocument& document) {
   return bytes;
 }
 
-StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint64_t index) {
+StatusOr<Span<const uint8_t>> AvailableViewBytes(const GltfDocument& document, uint64_t index) {
   const std::string name = "bufferView " + std::to_string(index);
   const Json* view = FindElement(document.json, "bufferViews", index);
   if (view == nullptr) return InvalidData(name + " does not exist");
@@ -135,13 +135,19 @@ StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint
   if (buffer.value() >= document.buffers.size()) {
     return InvalidData(name + ": buffer " + std::to_string(buffer.value()) + " does not exist");
   }
-  const Bytes& bytes = document.buffers[static_cast<size_t>(buffer.value())];
-  if (offset.value() > bytes.size() || length.value() > bytes.size() - offset.value()) {
-    return InvalidData(name + ": bytes " + std::to_string(offset.value()) + " + " + std::to_string(length.value()) +
-                       " are not in buffer " + std::to_string(buffer.value()) + ", which holds " +
-                       std::to_string(bytes.size()) + "; the file is truncated or damaged");
+  const Span<const uint8_t> bytes = document.buffers[static_cast<size_t>(buffer.value())];
+  const uint64_t begin = std::min<uint64_t>(offset.value(), bytes.size());
+  return bytes.Subspan(static_cast<size_t>(begin)).First(static_cast<size_t>(std::min(length.value(), bytes.size() - begin)));
+}
+
+StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint64_t index) {
+  LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, AvailableViewBytes(document, index));
+  const uint64_t length = *AsIndex(Find(*FindElement(document.json, "bufferViews", index), "byteLength"));
+  if (bytes.size() < length) {
+    return InvalidData("bufferView " + std::to_string(index) + ": only " + std::to_string(bytes.size()) + " of its " +
+                       std::to_string(length) + " bytes are in its buffer; the file is truncated or damaged");
   }
-  return Span<const uint8_t>(bytes).Subspan(static_cast<size_t>(offset.value())).First(static_cast<size_t>(length.value()));
+  return bytes;
 }
 
 bool UsesExtension(const GltfDocument& document, const char* name) {

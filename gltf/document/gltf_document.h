@@ -29,6 +29,9 @@ Bytes FormatGlb(const GltfDocument& document);
 // The bytes of bufferViews[index]. Fails with kInvalidData when the view or its range is not there.
 StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint64_t index);
 
+// The same, but cut short where the buffer ends early. Fails when the view is not there.
+StatusOr<Span<const uint8_t>> AvailableViewBytes(const GltfDocument& document, uint64_t index);
+
 // Whether a name is in the document's extensionsUsed.
 bool UsesExtension(const GltfDocument& document, const char* name);
 

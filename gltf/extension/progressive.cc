@@ -139,7 +139,7 @@ Json FormatProgressive(const Progressive& progressive) {
 }
 
 StatusOr<GatheredStream> GatherStream(const GltfDocument& document, const Progressive& progressive, uint64_t stream) {
-  LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> data, BufferViewBytes(document, progressive.data));
+  LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> data, AvailableViewBytes(document, progressive.data));
   GatheredStream gathered;
   uint64_t offset = 0;
   bool is_base = true;

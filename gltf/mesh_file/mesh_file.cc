@@ -4,7 +4,9 @@
 #include <cstring>
 #include <filesystem>
 
+#include "lacerta/codec.h"
 #include "lacerta/file_io.h"
+#include "lacerta/gltf.h"
 #include "mesh_file/readers.h"
 #include "mesh_file/writers.h"
 
@@ -22,6 +24,21 @@ std::string LowercaseExtension(const std::string& path) {
 bool BeginsWith(Span<const uint8_t> bytes, const char* magic) {
   const size_t length = std::strlen(magic);
   return bytes.size() >= length && std::memcmp(bytes.data(), magic, length) == 0;
+}
+
+// Notes on what was left out are for those who call FlattenGltf themselves.
+StatusOr<TriangleMesh> ParseGltfSurface(Span<const uint8_t> bytes, const std::string& folder) {
+  UnpackOptions options;
+  options.folder = folder;
+  LACERTA_ASSIGN_OR_RETURN(FlattenResult result, FlattenGltf(bytes, options));
+  return std::move(result.mesh);
+}
+
+// A stream that is cut short gives the levels that it holds; a damaged one is refused.
+StatusOr<TriangleMesh> ParseDrc(Span<const uint8_t> bytes) {
+  LACERTA_ASSIGN_OR_RETURN(DecodedMesh decoded, DecodeMesh(bytes, {}));
+  LACERTA_RETURN_IF_ERROR(decoded.refinement);
+  return std::move(decoded.mesh);
 }
 
 Status CheckIndices(const TriangleMesh& mesh) {
@@ -65,11 +82,11 @@ StatusOr<TriangleMesh> ParseMesh(Span<const uint8_t> bytes, MeshFormat format, c
     case MeshFormat::kStl:
       return ParseStl(bytes);
     case MeshFormat::kDrc:
+      return ParseDrc(bytes);
     case MeshFormat::kGltf:
-      break;
+      return ParseGltfSurface(bytes, folder);
   }
-  (void)folder;
-  return Unsupported("not read yet");
+  return InternalError("a mesh format without a parser");
 }
 
 StatusOr<TriangleMesh> ReadMeshFile(const std::string& path) {
@@ -86,6 +103,10 @@ Status WriteMeshFile(const TriangleMesh& mesh, const std::string& path) {
   const std::string extension = LowercaseExtension(path);
   if (extension == ".ply") return WriteFileAtomically(path, FormatPly(mesh));
   if (extension == ".obj") return WriteFileAtomically(path, FormatObj(mesh));
+  if (extension == ".glb") {
+    LACERTA_ASSIGN_OR_RETURN(const Bytes glb, FormatPlainGlb(mesh, std::filesystem::path(path).stem().string()));
+    return WriteFileAtomically(path, glb);
+  }
   return Unsupported(path + ": meshes are written as .ply, .obj or .glb; choose one of these extensions");
 }
 

@@ -57,7 +57,7 @@ StatusOr<AssetInfo> DescribeGltf(Span<const uint8_t> asset, const std::string& f
     }
     if (!described.insert(index).second) continue;
     if (info.streams.empty()) info.fallback = FallbackOf(document, primitive);
-    const StatusOr<Span<const uint8_t>> data = BufferViewBytes(document, progressive.value().data);
+    const StatusOr<Span<const uint8_t>> data = AvailableViewBytes(document, progressive.value().data);
     StreamInfo stream = DescribeStream(progressive.value(), index, data.ok() ? data.value().size() : 0);
     stream.mesh = place.mesh;
     stream.primitive = place.primitive;
