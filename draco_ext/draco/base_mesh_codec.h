@@ -23,9 +23,10 @@ struct CodedBase {
 // Codes a base mesh without loss in the fewest bytes found among Draco's settings and starting triangles; deterministic.
 // The decoder's floats round to the lattice exactly; they equal BaseMesh::ToMesh() bit for bit where step * lattice is
 // exact in float, as with a step from ShortStep and |lattice| < 2^16.
+// BaseMeshFromPositions(decoded mesh, step) gives `mesh` again.
 // Fails with kInvalidData on an empty base, a step that is not a positive normal float, lattice values of 2^24 or more or
-// spanning more than 24 bits, indices out of range, and on what Draco cannot carry unchanged: degenerate triangles,
-// non-manifold edges and vertices, vertices of no triangle.
+// spanning more than 24 bits, a base that is not an oriented manifold (BuildTopology), and where Draco does not carry it
+// unchanged.
 StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base);
 
 // The largest float with an 8 bit significand that is not greater than `step`, a positive normal float.
@@ -39,10 +40,6 @@ struct DecodedBase {
 // Decodes the stock Draco mesh stream at the front of `stream`, whatever its method and attributes, and checks all
 // indices and positions. Safe on untrusted bytes as far as libdraco is: its counts are checked against `limits` first.
 StatusOr<DecodedBase> DecodeBaseMesh(Span<const uint8_t> stream, const DecodeLimits& limits);
-
-// The lattice that a decoded base lies on: lattice = round(position / step). Fails with kInvalidData where a position is
-// further than 1/4 step away from the lattice or |lattice| reaches 2^24, with kInvalidArgument on a bad step.
-StatusOr<BaseMesh> ToLattice(const TriangleMesh& mesh, float step);
 
 }  // namespace lacerta
 

@@ -41,9 +41,8 @@ Status CheckEncodable(const TriangleMesh& mesh) {
   return {};
 }
 
-std::unique_ptr<draco::Mesh> ToDracoMesh(const TriangleMesh& mesh) {
+void FillDracoMesh(const TriangleMesh& mesh, draco::Mesh* result) {
   const auto num_vertices = static_cast<uint32_t>(mesh.positions.size());
-  auto result = std::make_unique<draco::Mesh>();
   result->set_num_points(num_vertices);
   draco::GeometryAttribute description;
   description.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_FLOAT32, false, 3 * sizeof(float), 0);
@@ -59,6 +58,11 @@ std::unique_ptr<draco::Mesh> ToDracoMesh(const TriangleMesh& mesh) {
     for (size_t k = 0; k < 3; ++k) face[k] = draco::PointIndex(mesh.triangles[f][k]);
     result->SetFace(draco::FaceIndex(f), face);
   }
+}
+
+std::unique_ptr<draco::Mesh> ToDracoMesh(const TriangleMesh& mesh) {
+  auto result = std::make_unique<draco::Mesh>();
+  FillDracoMesh(mesh, result.get());
   return result;
 }
 

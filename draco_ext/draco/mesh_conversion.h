@@ -19,6 +19,8 @@ Status CheckEncodable(const TriangleMesh& mesh);
 // Point i of the result is vertex i, its position is value i of the one POSITION attribute (float32 x 3): vertices at
 // equal positions stay apart. The mesh must pass CheckEncodable.
 std::unique_ptr<draco::Mesh> ToDracoMesh(const TriangleMesh& mesh);
+// The same into an empty mesh.
+void FillDracoMesh(const TriangleMesh& mesh, draco::Mesh* result);
 
 // Vertex i of the result is point i. Integer positions are converted to float. Fails with kInvalidData where there is no
 // POSITION attribute of three components, an index is out of range or a position is not finite.

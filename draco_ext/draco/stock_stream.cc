@@ -40,25 +40,9 @@ struct Counts {
   uint32_t triangles = 0;
 };
 
-// Reads the counts that open the connectivity of a stock stream of bitstream version 2.2. `buffer` is a copy: the decoder
-// proper begins anew.
+// Reads the counts that open the connectivity. `buffer` is a copy: the decoder proper begins anew.
 StatusOr<Counts> PeekCounts(draco::DecoderBuffer buffer) {
-  draco::DracoHeader header;
-  if (const draco::Status status = draco::PointCloudDecoder::DecodeHeader(&buffer, &header); !status.ok()) {
-    return FromDracoStatus(status);
-  }
-  if (header.encoder_type != draco::TRIANGULAR_MESH) return Unsupported("Draco stream holds no triangle mesh");
-  if (header.version_major != 2 || header.version_minor != 2) {
-    return Unsupported("Draco bitstream version " + std::to_string(header.version_major) + "." +
-                       std::to_string(header.version_minor) + " is not supported, only 2.2; encode the mesh again");
-  }
-  buffer.set_bitstream_version(draco::kDracoMeshBitstreamVersion);
-  if ((header.flags & METADATA_FLAG_MASK) != 0) {
-    draco::GeometryMetadata metadata;
-    if (!draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata)) {
-      return InvalidData("metadata of the Draco stream is damaged");
-    }
-  }
+  LACERTA_ASSIGN_OR_RETURN(const draco::DracoHeader header, ReadMeshHeader(&buffer));
   Counts counts;
   if (header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING) {
     uint8_t traversal = 0;
@@ -132,6 +116,26 @@ Status SetQuantizationGrid(const QuantizationGrid& grid, Bytes* stream) {
   const std::array<float, 4> wanted = {grid.origin.x, grid.origin.y, grid.origin.z, grid.range};
   std::memcpy(written, wanted.data(), sizeof(wanted));
   return {};
+}
+
+StatusOr<draco::DracoHeader> ReadMeshHeader(draco::DecoderBuffer* buffer) {
+  draco::DracoHeader header;
+  if (const draco::Status status = draco::PointCloudDecoder::DecodeHeader(buffer, &header); !status.ok()) {
+    return FromDracoStatus(status);
+  }
+  if (header.encoder_type != draco::TRIANGULAR_MESH) return Unsupported("Draco stream holds no triangle mesh");
+  if (header.version_major != 2 || header.version_minor != 2) {
+    return Unsupported("Draco bitstream version " + std::to_string(header.version_major) + "." +
+                       std::to_string(header.version_minor) + " is not supported, only 2.2; encode the mesh again");
+  }
+  buffer->set_bitstream_version(draco::kDracoMeshBitstreamVersion);
+  if ((header.flags & METADATA_FLAG_MASK) != 0) {
+    draco::GeometryMetadata metadata;
+    if (!draco::MetadataDecoder().DecodeGeometryMetadata(buffer, &metadata)) {
+      return InvalidData("metadata of the Draco stream is damaged");
+    }
+  }
+  return header;
 }
 
 StatusOr<StockMesh> DecodeStockStream(Span<const uint8_t> stream, const DecodeLimits& limits) {

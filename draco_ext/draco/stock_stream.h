@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 
+#include <draco/compression/config/compression_shared.h>
+#include <draco/core/decoder_buffer.h>
 #include <draco/mesh/mesh.h>
 
 #include "lacerta/decoder.h"
@@ -43,6 +45,10 @@ struct QuantizationGrid {
 // options cannot carry it: they store floats as decimal text with six digits after the point.
 Status SetQuantizationGrid(const QuantizationGrid& grid, Bytes* stream);
 
+// Reads the header of a mesh stream of any method, and skips the metadata that may follow it. Fails with kInvalidData, or
+// with kUnsupported on a point cloud and on a bitstream version other than 2.2, which Draco writes since 2017.
+StatusOr<draco::DracoHeader> ReadMeshHeader(draco::DecoderBuffer* buffer);
+
 struct StockMesh {
   std::unique_ptr<draco::Mesh> mesh;
   size_t bytes_used = 0;  // length of the stock stream at the front of the input
@@ -50,7 +56,7 @@ struct StockMesh {
 
 // Decodes the stock mesh stream at the front of `stream` with Draco's own decoder. Counts are read and checked against
 // `limits`, and against what a stream of this length can hold at all, before Draco takes memory for them. Fails with
-// kInvalidData, kUnsupported (a point cloud, another method, a bitstream version other than 2.2) or kLimitExceeded.
+// kInvalidData, kUnsupported (as ReadMeshHeader, or a method that is not Draco's) or kLimitExceeded.
 // Indices and positions of the result are not checked yet: FromDracoMesh does that.
 StatusOr<StockMesh> DecodeStockStream(Span<const uint8_t> stream, const DecodeLimits& limits);
 

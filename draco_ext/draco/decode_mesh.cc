@@ -1,0 +1,70 @@
+#include "draco/decode_mesh.h"
+
+#include <string>
+#include <utility>
+
+#include "draco/base_mesh_codec.h"
+#include "lacerta/decoder.h"
+
+namespace lacerta {
+namespace {
+
+// Takes the levels of `refinement` into `result`, which holds the base.
+Status Refine(Span<const uint8_t> refinement, const DecodeOptions& options, DecodedMesh* result) {
+  LACERTA_ASSIGN_OR_RETURN(const RefinementInfo info, ReadRefinementInfo(refinement));
+  result->num_levels = info.num_levels;
+  LACERTA_ASSIGN_OR_RETURN(const BaseMesh base, BaseMeshFromPositions(result->mesh, info.base_step));
+  RefinementOptions refinement_options;
+  refinement_options.max_level = options.max_level;
+  refinement_options.limits = options.limits;
+  LACERTA_ASSIGN_OR_RETURN(const RefinementResult refined, DecodeRefinement(base, refinement, refinement_options));
+  if (refined.level > 0) {
+    LACERTA_ASSIGN_OR_RETURN(result->mesh, MeshAtLevel(refined.mesh, refined.level));
+    result->level = refined.level;
+  }
+  LACERTA_RETURN_IF_ERROR(refined.refinement);
+  const bool stopped = options.max_level.has_value() && refined.level >= *options.max_level;
+  if (refined.level < refined.num_levels && !stopped) {
+    return InvalidData("stream ends within level " + std::to_string(refined.level + 1) + " of " +
+                       std::to_string(refined.num_levels));
+  }
+  return {};
+}
+
+}  // namespace
+
+Status CheckDecodeOptions(const DecodeOptions& options) {
+  if (options.max_level.has_value() && *options.max_level < 0) {
+    return InvalidArgument("max_level is " + std::to_string(*options.max_level) + "; it must not be negative");
+  }
+  return {};
+}
+
+DecodedMesh RefineBase(TriangleMesh base, Span<const uint8_t> refinement, const DecodeOptions& options) {
+  DecodedMesh result;
+  result.mesh = std::move(base);
+  if (!refinement.empty()) result.refinement = Refine(refinement, options, &result);
+  return result;
+}
+
+StatusOr<DecodedMesh> DecodeCustomFormParts(const StreamParts& parts, const DecodeOptions& options) {
+  auto base = DecodeBaseMesh(parts.base, options.limits);
+  if (!base.ok()) return base.status().WithContext("base of the custom form");
+  if (base.value().bytes_used != parts.base.size()) {
+    return InvalidData("base of the custom form takes " + std::to_string(base.value().bytes_used) + " bytes, not the " +
+                       std::to_string(parts.base.size()) + " announced");
+  }
+  return RefineBase(std::move(base).value().mesh, parts.refinement, options);
+}
+
+StatusOr<DecodedMesh> DecodeMesh(Span<const uint8_t> stream, const DecodeOptions& options) {
+  LACERTA_RETURN_IF_ERROR(CheckDecodeOptions(options));
+  if (IsCustomForm(stream)) {
+    LACERTA_ASSIGN_OR_RETURN(const StreamParts parts, SplitCustomForm(stream));
+    return DecodeCustomFormParts(parts, options);
+  }
+  LACERTA_ASSIGN_OR_RETURN(DecodedBase base, DecodeBaseMesh(stream, options.limits));
+  return RefineBase(std::move(base.mesh), stream.Subspan(base.bytes_used), options);
+}
+
+}  // namespace lacerta

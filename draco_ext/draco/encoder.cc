@@ -1,0 +1,32 @@
+#include <utility>
+
+#include <draco/compression/config/encoder_options.h>
+
+#include "draco/custom_form.h"
+#include "draco/mesh_conversion.h"
+#include "draco/mesh_encoder.h"
+#include "lacerta/draco.h"
+
+namespace lacerta {
+
+draco::Status Encoder::EncodeMeshToBuffer(const draco::Mesh& mesh, draco::EncoderBuffer* out_buffer) {
+  const StatusOr<TriangleMesh> triangles = FromDracoMesh(mesh);
+  if (!triangles.ok()) return ToDracoStatus(triangles.status());
+  EncodeOptions options = options_;
+  options.form = StreamForm::kDraco;
+  StatusOr<EncodedMesh> result = EncodeMesh(triangles.value(), options);
+  if (!result.ok()) return ToDracoStatus(result.status());
+  EncodedMesh& encoded = result.value();
+  report_ = std::move(encoded.report);
+  const Span<const uint8_t> stream(encoded.stream);
+  if (options_.form == StreamForm::kDraco) {
+    if (!out_buffer->Encode(stream.data(), stream.size())) return draco::ErrorStatus("buffer is in bit mode");
+    return draco::OkStatus();
+  }
+  const size_t base_size = encoded.part_sizes.front();
+  ProgressiveMeshEncoder encoder(StreamParts{stream.First(base_size), stream.Subspan(base_size)});
+  encoder.SetMesh(mesh);
+  return encoder.Encode(draco::EncoderOptions::CreateDefaultOptions(), out_buffer);
+}
+
+}  // namespace lacerta

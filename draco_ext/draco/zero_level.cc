@@ -1,0 +1,120 @@
+#include "draco/zero_level.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "draco/base_mesh_codec.h"
+#include "draco/mesh_conversion.h"
+#include "draco/stock_stream.h"
+
+namespace lacerta {
+namespace {
+
+constexpr size_t kManyTriangles = 200000;  // fewer settings are tried from there on
+
+struct GridMesh {
+  TriangleMesh mesh;  // integers as floats
+  QuantizationGrid grid;
+};
+
+StatusOr<GridMesh> Quantize(const TriangleMesh& mesh, int bits) {
+  Vec3f low = mesh.positions[0];
+  Vec3f high = low;
+  for (const Vec3f& p : mesh.positions) {
+    for (int c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], p[c]);
+      high[c] = std::max(high[c], p[c]);
+    }
+  }
+  GridMesh result;
+  result.grid.origin = low;
+  const Vec3f size = high - low;
+  const float range = std::max({size.x, size.y, size.z});
+  if (!std::isfinite(range)) return InvalidData("bounding box of the mesh does not fit a float; scale the mesh down");
+  result.grid.range = std::isnormal(range) ? range : 1.0f;
+  const double divisor = (1 << bits) - 1;
+  const double scale = divisor / static_cast<double>(result.grid.range);
+  result.mesh.triangles = mesh.triangles;
+  result.mesh.positions.reserve(mesh.positions.size());
+  for (const Vec3f& p : mesh.positions) {
+    const Vec3d exact = (Vec3Cast<double>(p) - Vec3Cast<double>(low)) * scale;
+    Vec3f integer;
+    for (int c = 0; c < 3; ++c) integer[c] = static_cast<float>(std::clamp(std::round(exact[c]), 0.0, divisor));
+    result.mesh.positions.push_back(integer);
+  }
+  return result;
+}
+
+using Corners = std::array<std::array<float, 3>, 3>;
+
+// The triangles as corner positions, each from its smallest corner on, sorted: equal for equal surfaces.
+std::vector<Corners> SortedTriangles(const TriangleMesh& mesh) {
+  std::vector<Corners> result;
+  result.reserve(mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles) {
+    Corners corners;
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec3f& p = mesh.positions[t[k]];
+      corners[k] = {p.x, p.y, p.z};
+    }
+    const Corners start = corners;
+    for (size_t k = 1; k < 3; ++k) corners = std::min(corners, Corners{start[k], start[(k + 1) % 3], start[(k + 2) % 3]});
+    result.push_back(corners);
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+// The smallest edgebreaker stream, or none where Draco refuses the mesh.
+Bytes SmallestEdgebreaker(const draco::Mesh& mesh, int bits) {
+  using Connectivity = StockSettings::Connectivity;
+  using Prediction = StockSettings::Prediction;
+  std::vector<StockSettings> candidates = {{Connectivity::kEdgebreakerValence, Prediction::kParallelogram, 0},
+                                           {Connectivity::kEdgebreakerValence, Prediction::kConstrainedMultiParallelogram, 0}};
+  if (mesh.num_faces() < kManyTriangles) {
+    candidates.push_back({Connectivity::kEdgebreaker, Prediction::kParallelogram, 0});
+    candidates.push_back({Connectivity::kEdgebreaker, Prediction::kConstrainedMultiParallelogram, 0});
+  }
+  Bytes smallest;
+  for (const StockSettings& settings : candidates) {
+    StatusOr<Bytes> stream = EncodeIntegerPositions(mesh, bits, settings);
+    if (stream.ok() && (smallest.empty() || stream.value().size() < smallest.size())) smallest = std::move(stream).value();
+  }
+  return smallest;
+}
+
+bool HoldsTriangles(const Bytes& stream, const std::vector<Corners>& triangles) {
+  if (stream.empty()) return false;
+  const StatusOr<DecodedBase> decoded = DecodeBaseMesh(stream, DecodeLimits());
+  return decoded.ok() && SortedTriangles(decoded.value().mesh) == triangles;
+}
+
+}  // namespace
+
+StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits) {
+  if (bits < 1 || bits > 24) return InvalidArgument(std::to_string(bits) + " bits per coordinate; 1 to 24 are possible");
+  LACERTA_RETURN_IF_ERROR(CheckEncodable(mesh));
+  LACERTA_ASSIGN_OR_RETURN(const GridMesh quantized, Quantize(mesh, bits));
+  const auto draco_mesh = ToDracoMesh(quantized.mesh);
+  const std::vector<Corners> triangles = SortedTriangles(quantized.mesh);
+
+  CodedZeroLevel result;
+  result.stream = SmallestEdgebreaker(*draco_mesh, bits);
+  result.sequential = !HoldsTriangles(result.stream, triangles);
+  if (result.sequential) {
+    const StockSettings settings = {StockSettings::Connectivity::kSequential, StockSettings::Prediction::kDifference, 0};
+    LACERTA_ASSIGN_OR_RETURN(result.stream, EncodeIntegerPositions(*draco_mesh, bits, settings));
+    if (!HoldsTriangles(result.stream, triangles)) return InternalError("Draco did not keep the triangles of the mesh");
+  }
+  LACERTA_RETURN_IF_ERROR(SetQuantizationGrid(quantized.grid, &result.stream));
+  LACERTA_ASSIGN_OR_RETURN(DecodedBase decoded, DecodeBaseMesh(result.stream, DecodeLimits()));
+  result.mesh = std::move(decoded.mesh);
+  return result;
+}
+
+}  // namespace lacerta
