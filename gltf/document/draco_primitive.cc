@@ -1,6 +1,5 @@
 #include "document/draco_primitive.h"
 
-#include <draco/compression/decode.h>
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
@@ -8,6 +7,10 @@
 #include <cmath>
 #include <exception>
 #include <memory>
+#include <utility>
+
+#include "draco/stock_stream.h"
+#include "lacerta/decoder.h"
 
 namespace lacerta {
 namespace {
@@ -65,12 +68,8 @@ StatusOr<ComponentType> FromDracoDataType(draco::DataType type) {
 // Draco throws nothing itself, but its containers do when a damaged stream asks for too much memory.
 StatusOr<std::unique_ptr<draco::Mesh>> DecodeStock(Span<const uint8_t> bytes) {
   try {
-    draco::DecoderBuffer buffer;
-    buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    draco::Decoder decoder;
-    auto result = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!result.ok()) return InvalidData("the Draco stream is damaged (" + result.status().error_msg_string() + ")");
-    return std::move(result).value();
+    LACERTA_ASSIGN_OR_RETURN(StockMesh stock, DecodeStockStream(bytes, DecodeLimits{}));
+    return std::move(stock.mesh);
   } catch (const std::exception& error) {
     return InvalidData(std::string("the Draco stream is damaged (") + error.what() + ")");
   }
@@ -176,7 +175,9 @@ StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive,
   for (size_t i = 0; i < primitive.attributes.size(); ++i) {
     const Attribute& attribute = primitive.attributes[i];
     const int id = static_cast<int>(i);
-    if (attribute.name == "POSITION" && attribute.data.type == ComponentType::kFloat) {
+    if (attribute.name == "POSITION" && attribute.data.type == ComponentType::kFloat && !grid.shareable) {
+      encoder.SetAttributeQuantization(id, grid.bits);
+    } else if (attribute.name == "POSITION" && attribute.data.type == ComponentType::kFloat) {
       const float origin[3] = {grid.origin.x, grid.origin.y, grid.origin.z};
       encoder.SetAttributeExplicitQuantization(id, grid.bits, 3, origin, grid.range);
     } else if (const int bits = QuantizationBits(attribute); bits > 0) {
@@ -204,13 +205,17 @@ StatusOr<uint32_t> DracoPositionId(Span<const uint8_t> bytes) {
 }
 
 PositionGrid MakePositionGrid(const Vec3f& min, const Vec3f& max, double psnr) {
+  constexpr float kGridMargin = 2e-6f;       // model units
+  constexpr double kLeastSharedRange = 1e-2;  // below, the margin would cost precision
   constexpr int kLeastBits = 8;
   constexpr int kMostBits = 24;  // beyond, floats have no more bits to keep
   const Vec3d extent = Vec3Cast<double>(max) - Vec3Cast<double>(min);
   PositionGrid grid;
-  grid.origin = min;
   const double range = std::max({extent.x, extent.y, extent.z});
-  grid.range = range > 0.0 ? static_cast<float>(range) : 1.0f;
+  // Draco's options keep six decimals of these numbers, so they are widened to what six decimals can say.
+  grid.shareable = range >= kLeastSharedRange;
+  grid.origin = min - Vec3f{kGridMargin, kGridMargin, kGridMargin};
+  grid.range = range > 0.0 ? static_cast<float>(range) + 4 * kGridMargin : 1.0f;
   grid.bits = kLeastBits;
   const auto psnr_of = [&](int bits) {
     return 20.0 * std::log10(2.0 * Norm(extent) * (std::pow(2.0, bits) - 1.0) / grid.range);

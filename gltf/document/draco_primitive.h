@@ -30,6 +30,7 @@ struct PositionGrid {
   Vec3f origin;
   float range = 1.0f;  // model units, > 0
   int bits = 14;       // 1..30
+  bool shareable = true;  // false: too small for Draco's options to carry; every primitive gets a grid of its own
 };
 
 // The coarsest grid over a box that keeps the surface within `psnr` dB: rounding moves a vertex by an RMS of half a step.

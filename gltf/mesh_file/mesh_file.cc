@@ -34,7 +34,7 @@ StatusOr<TriangleMesh> ParseGltfSurface(Span<const uint8_t> bytes, const std::st
   return std::move(result.mesh);
 }
 
-// A stream that is cut short gives the levels that it holds; a damaged one is refused.
+// The whole mesh or none: DecodeMesh tells what is left of a stream that was cut short or damaged.
 StatusOr<TriangleMesh> ParseDrc(Span<const uint8_t> bytes) {
   LACERTA_ASSIGN_OR_RETURN(DecodedMesh decoded, DecodeMesh(bytes, {}));
   LACERTA_RETURN_IF_ERROR(decoded.refinement);

@@ -17,7 +17,7 @@ Fallback FallbackOf(const GltfDocument& document, const Json& primitive) {
   return position.has_value() && !ViewsOfAccessor(document, *position).empty() ? Fallback::kPlain : Fallback::kNone;
 }
 
-StreamInfo DescribeStream(const Progressive& progressive, uint64_t index, uint64_t data_size) {
+StreamInfo StreamOfAsset(const Progressive& progressive, uint64_t index, uint64_t data_size) {
   const ProgressiveStream& stream = progressive.streams[static_cast<size_t>(index)];
   StreamInfo info;
   info.diagonal = Norm(Vec3Cast<double>(stream.max) - Vec3Cast<double>(stream.min));
@@ -58,7 +58,7 @@ StatusOr<AssetInfo> DescribeGltf(Span<const uint8_t> asset, const std::string& f
     if (!described.insert(index).second) continue;
     if (info.streams.empty()) info.fallback = FallbackOf(document, primitive);
     const StatusOr<Span<const uint8_t>> data = AvailableViewBytes(document, progressive.value().data);
-    StreamInfo stream = DescribeStream(progressive.value(), index, data.ok() ? data.value().size() : 0);
+    StreamInfo stream = StreamOfAsset(progressive.value(), index, data.ok() ? data.value().size() : 0);
     stream.mesh = place.mesh;
     stream.primitive = place.primitive;
     stream.name = AsString(Find(*FindElement(document.json, "meshes", place.mesh), "name"));

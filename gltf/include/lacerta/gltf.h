@@ -109,19 +109,19 @@ struct FlattenResult {
 // coordinates. Skins and morph targets are not applied. Fails with kInvalidData or kUnsupported.
 StatusOr<FlattenResult> FlattenGltf(Span<const uint8_t> asset, const UnpackOptions& options);
 
-// One progressive stream inside an asset, as its JSON describes it.
+// One progressive stream: as the JSON of an asset describes it, or as read from its own headers.
 struct StreamInfo {
   struct Level {
     uint64_t vertices = 0;
     uint64_t triangles = 0;
-    uint64_t bytes = 0;      // of the stream up to and with this level
-    double error = 0.0;      // mesh units
-    bool available = false;  // all its bytes are in the file
+    uint64_t bytes = 0;           // of the stream up to and with this level
+    std::optional<double> error;  // mesh units; a bare stream does not say
+    bool available = false;       // all its bytes are in the file
   };
   uint64_t mesh = 0;  // the first primitive that shows it
   uint64_t primitive = 0;
   std::string name;
-  double diagonal = 0.0;  // mesh units
+  double diagonal = 0.0;  // of the bounding box, mesh units
   std::vector<Level> levels;
 };
 
@@ -134,6 +134,10 @@ struct AssetInfo {
 
 // What is inside, without decoding. Fails with kInvalidData when the extension contradicts itself.
 StatusOr<AssetInfo> DescribeGltf(Span<const uint8_t> asset, const std::string& folder);
+
+// What a bare stream (.drc) holds: either form of ours, or a stock Draco mesh with its one level. Where the refinement ends early,
+// the levels after its end are left out. Fails like DecodeMesh.
+StatusOr<StreamInfo> DescribeStream(Span<const uint8_t> stream, const DecodeLimits& limits);
 
 }  // namespace lacerta
 
