@@ -39,7 +39,8 @@ Status CopyElements(Span<const uint8_t> source, uint64_t offset, uint64_t stride
                     Bytes* target) {
   if (count == 0) return Status();
   if (stride < size) return InvalidData("byteStride " + std::to_string(stride) + " is smaller than an element");
-  if (offset > source.size() || size > source.size() - offset || (count - 1) > (source.size() - offset - size) / stride) {
+  if (offset > source.size() || size > source.size() - offset ||
+      (count - 1) > (source.size() - offset - size) / stride) {
     return InvalidData(std::to_string(count) + " elements from byte " + std::to_string(offset) +
                        " on are more than the bufferView of " + std::to_string(source.size()) + " bytes holds");
   }
@@ -65,7 +66,8 @@ Status ApplySparse(const GltfDocument& document, const Json& sparse, AccessorDat
   if (indices == nullptr || values == nullptr) return InvalidData("sparse has no indices or no values");
   AccessorData where;
   LACERTA_ASSIGN_OR_RETURN(where.type, ParseComponentType(*indices));
-  if (where.type != ComponentType::kUint8 && where.type != ComponentType::kUint16 && where.type != ComponentType::kUint32) {
+  if (where.type != ComponentType::kUint8 && where.type != ComponentType::kUint16 &&
+      where.type != ComponentType::kUint32) {
     return InvalidData("sparse.indices are not of an unsigned integer type");
   }
   LACERTA_ASSIGN_OR_RETURN(const uint64_t index_view, GetIndex(*indices, "bufferView"));
@@ -140,7 +142,8 @@ float AccessorData::Float(uint64_t element, uint32_t component) const {
     case ComponentType::kUint16:
       return normalized ? static_cast<float>(Load<uint16_t>(bytes, i)) / 65535.0f : Load<uint16_t>(bytes, i);
     case ComponentType::kInt16:
-      return normalized ? std::max(static_cast<float>(Load<int16_t>(bytes, i)) / 32767.0f, -1.0f) : Load<int16_t>(bytes, i);
+      return normalized ? std::max(static_cast<float>(Load<int16_t>(bytes, i)) / 32767.0f, -1.0f)
+                        : Load<int16_t>(bytes, i);
     case ComponentType::kUint32:
       return static_cast<float>(Load<uint32_t>(bytes, i));
   }

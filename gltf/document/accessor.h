@@ -38,8 +38,8 @@ AccessorData MakeFloatAccessor(const std::vector<Vec3f>& values);
 // 16 bits where `num_vertices` allows it, else 32.
 AccessorData MakeIndexAccessor(const std::vector<Triangle>& triangles, uint64_t num_vertices);
 
-// Reads accessors[index]: strides, sparse substitution and normalization; matrices are refused with kUnsupported, as is an
-// accessor without any data. Messages begin with "accessor N".
+// Reads accessors[index]: strides, sparse substitution and normalization; matrices are refused with kUnsupported, as is
+// an accessor without any data. Messages begin with "accessor N".
 StatusOr<AccessorData> ReadAccessor(const GltfDocument& document, uint64_t index);
 
 }  // namespace lacerta

@@ -11,7 +11,8 @@ namespace {
 
 constexpr uint64_t kAlignment = 4;
 
-// Calls visit(value) on every reference to a bufferView: by the key "bufferView" wherever it is, and "data" of our extension.
+// Calls visit(value) on every reference to a bufferView: by the key "bufferView" wherever it is, and "data" of our
+// extension.
 void VisitViewReferences(Json& json, const std::function<void(Json&)>& visit) {
   if (json.is_array()) {
     for (Json& element : json) VisitViewReferences(element, visit);
@@ -110,9 +111,8 @@ uint64_t AddBufferView(uint64_t buffer, uint64_t offset, uint64_t length, GltfDo
 }
 
 Json DescribeAccessor(const AccessorData& data, bool bounds) {
-  Json accessor = {{"componentType", static_cast<uint32_t>(data.type)},
-                   {"count", data.count},
-                   {"type", TypeName(data.components)}};
+  Json accessor = {
+      {"componentType", static_cast<uint32_t>(data.type)}, {"count", data.count}, {"type", TypeName(data.components)}};
   if (data.normalized) accessor["normalized"] = true;
   if (bounds) AddBounds(data, &accessor);
   return accessor;

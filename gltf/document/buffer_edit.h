@@ -30,12 +30,12 @@ uint64_t AddAccessor(Json accessor, GltfDocument* document);
 // The bufferViews that accessor `index` refers to, itself or through its sparse part.
 std::set<uint64_t> ViewsOfAccessor(const GltfDocument& document, uint64_t index);
 
-// Drops those of `candidates` that nothing refers to any more and renumbers the others. Where the asset uses an extension that
-// may refer to bufferViews in a way of its own, they are cut down to a few bytes instead.
+// Drops those of `candidates` that nothing refers to any more and renumbers the others. Where the asset uses an
+// extension that may refer to bufferViews in a way of its own, they are cut down to a few bytes instead.
 void DropUnusedViews(const std::set<uint64_t>& candidates, GltfDocument* document);
 
-// Moves all that bufferViews refer to into one buffer, in the order of the buffers, and drops the rest. Fails with kUnsupported
-// beyond 4 GB and with kInvalidData where a view refers to bytes that are not there.
+// Moves all that bufferViews refer to into one buffer, in the order of the buffers, and drops the rest. Fails with
+// kUnsupported beyond 4 GB and with kInvalidData where a view refers to bytes that are not there.
 Status MergeBuffers(GltfDocument* document);
 
 }  // namespace lacerta

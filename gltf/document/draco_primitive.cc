@@ -83,7 +83,8 @@ StatusOr<AccessorData> CopyAttribute(const draco::PointAttribute& attribute, uin
   data.normalized = attribute.normalized();
   data.count = num_points;
   const size_t size = data.components * ComponentSize(data.type);
-  if (static_cast<size_t>(attribute.byte_stride()) < size) return InvalidData("a Draco attribute has too small a stride");
+  if (static_cast<size_t>(attribute.byte_stride()) < size)
+    return InvalidData("a Draco attribute has too small a stride");
   data.bytes.resize(size * num_points);
   for (uint32_t p = 0; p < num_points; ++p) {
     const draco::AttributeValueIndex value = attribute.mapped_index(draco::PointIndex(p));
@@ -205,7 +206,7 @@ StatusOr<uint32_t> DracoPositionId(Span<const uint8_t> bytes) {
 }
 
 PositionGrid MakePositionGrid(const Vec3f& min, const Vec3f& max, double psnr) {
-  constexpr float kGridMargin = 2e-6f;       // model units
+  constexpr float kGridMargin = 2e-6f;        // model units
   constexpr double kLeastSharedRange = 1e-2;  // below, the margin would cost precision
   constexpr int kLeastBits = 8;
   constexpr int kMostBits = 24;  // beyond, floats have no more bits to keep

@@ -30,7 +30,8 @@ struct Chunks {
 };
 
 StatusOr<Chunks> SplitGlb(Span<const uint8_t> bytes) {
-  if (bytes.size() < 20) return InvalidData("the GLB header is cut off after " + std::to_string(bytes.size()) + " bytes");
+  if (bytes.size() < 20)
+    return InvalidData("the GLB header is cut off after " + std::to_string(bytes.size()) + " bytes");
   const uint32_t version = ReadUint32(bytes, 4);
   if (version != 2) return Unsupported("GLB version " + std::to_string(version) + "; only version 2 is read");
   const uint32_t json_length = ReadUint32(bytes, 12);
@@ -60,7 +61,8 @@ StatusOr<Bytes> LoadBuffer(const Json& buffer, bool first, const Chunks& chunks,
   if (!uri->is_string()) return InvalidData("\"uri\" is no string");
   LACERTA_ASSIGN_OR_RETURN(Bytes bytes, LoadUri(uri->get_ref<const std::string&>(), folder));
   if (bytes.size() < length) {
-    return InvalidData("announces " + std::to_string(length) + " bytes, but its data has " + std::to_string(bytes.size()));
+    return InvalidData("announces " + std::to_string(length) + " bytes, but its data has " +
+                       std::to_string(bytes.size()));
   }
   bytes.resize(static_cast<size_t>(length));
   return bytes;
@@ -137,7 +139,8 @@ StatusOr<Span<const uint8_t>> AvailableViewBytes(const GltfDocument& document, u
   }
   const Span<const uint8_t> bytes = document.buffers[static_cast<size_t>(buffer.value())];
   const uint64_t begin = std::min<uint64_t>(offset.value(), bytes.size());
-  return bytes.Subspan(static_cast<size_t>(begin)).First(static_cast<size_t>(std::min(length.value(), bytes.size() - begin)));
+  return bytes.Subspan(static_cast<size_t>(begin))
+      .First(static_cast<size_t>(std::min(length.value(), bytes.size() - begin)));
 }
 
 StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint64_t index) {

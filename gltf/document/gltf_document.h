@@ -17,10 +17,10 @@ struct GltfDocument {
   std::vector<Bytes> buffers;  // parallel to json["buffers"]
 };
 
-// Reads a .glb (by its magic) or .gltf. External buffers are looked for in `folder`. A GLB whose BIN chunk was cut off is
-// accepted with the bytes that are there; what refers to the missing ones fails when it is looked at. Every "byteLength" is held
-// against the bytes that are really there.
-// Fails with kInvalidData, kUnsupported (version, meshopt compression) or what LoadUri returns.
+// Reads a .glb (by its magic) or .gltf. External buffers are looked for in `folder`. A GLB whose BIN chunk was cut off
+// is accepted with the bytes that are there; what refers to the missing ones fails when it is looked at. Every
+// "byteLength" is held against the bytes that are really there. Fails with kInvalidData, kUnsupported (version, meshopt
+// compression) or what LoadUri returns.
 StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& folder);
 
 // A GLB of the document, which must have at most one buffer.
@@ -35,7 +35,8 @@ StatusOr<Span<const uint8_t>> AvailableViewBytes(const GltfDocument& document, u
 // Whether a name is in the document's extensionsUsed.
 bool UsesExtension(const GltfDocument& document, const char* name);
 
-// Adds a name to the list `key` ("extensionsUsed" or "extensionsRequired"), or takes it away together with an empty list.
+// Adds a name to the list `key` ("extensionsUsed" or "extensionsRequired"), or takes it away together with an empty
+// list.
 void AddExtension(const char* key, const char* name, GltfDocument* document);
 void RemoveExtension(const char* key, const char* name, GltfDocument* document);
 

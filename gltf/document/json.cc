@@ -33,7 +33,8 @@ Json* Find(Json& object, const char* key) { return const_cast<Json*>(Find(static
 
 const Json* FindElement(const Json& object, const char* key, uint64_t index) {
   const Json* array = Find(object, key);
-  return array != nullptr && array->is_array() && index < array->size() ? &(*array)[static_cast<size_t>(index)] : nullptr;
+  return array != nullptr && array->is_array() && index < array->size() ? &(*array)[static_cast<size_t>(index)]
+                                                                        : nullptr;
 }
 
 uint64_t ArraySize(const Json& object, const char* key) {

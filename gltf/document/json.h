@@ -1,5 +1,5 @@
-// JSON of a glTF asset. The whole document is kept as it was read, in its order, so that whatever this version does not know
-// passes through; see docs/decisions/0002-gltf-document.md. Nothing here throws.
+// JSON of a glTF asset. The whole document is kept as it was read, in its order, so that whatever this version does not
+// know passes through; see docs/decisions/0002-gltf-document.md. Nothing here throws.
 #ifndef LACERTA_DOCUMENT_JSON_H_
 #define LACERTA_DOCUMENT_JSON_H_
 
@@ -31,7 +31,8 @@ uint64_t ArraySize(const Json& object, const char* key);
 // A non-negative integer (1.0 counts as one); empty when `value` is anything else.
 std::optional<uint64_t> AsIndex(const Json* value);
 
-// `object[key]` as a non-negative integer. Fails with kInvalidData when it is something else or missing without a default.
+// `object[key]` as a non-negative integer. Fails with kInvalidData when it is something else or missing without a
+// default.
 StatusOr<uint64_t> GetIndex(const Json& object, const char* key, std::optional<uint64_t> missing = std::nullopt);
 
 std::optional<double> AsNumber(const Json* value);

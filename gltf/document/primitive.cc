@@ -17,7 +17,8 @@ std::vector<Triangle> Assemble(const std::vector<uint32_t>& corners, uint64_t mo
   std::vector<Triangle> triangles;
   if (mode == kTriangles) {
     triangles.reserve(corners.size() / 3);
-    for (size_t i = 0; i + 2 < corners.size(); i += 3) triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    for (size_t i = 0; i + 2 < corners.size(); i += 3)
+      triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
     return triangles;
   }
   for (size_t i = 2; i < corners.size(); ++i) {
@@ -31,7 +32,8 @@ std::vector<Triangle> Assemble(const std::vector<uint32_t>& corners, uint64_t mo
   return triangles;
 }
 
-StatusOr<std::vector<uint32_t>> ReadCorners(const GltfDocument& document, const Json& primitive, uint64_t num_vertices) {
+StatusOr<std::vector<uint32_t>> ReadCorners(const GltfDocument& document, const Json& primitive,
+                                            uint64_t num_vertices) {
   std::vector<uint32_t> corners;
   if (Find(primitive, "indices") == nullptr) {
     corners.resize(static_cast<size_t>(num_vertices));
@@ -41,8 +43,8 @@ StatusOr<std::vector<uint32_t>> ReadCorners(const GltfDocument& document, const 
   LACERTA_ASSIGN_OR_RETURN(const uint64_t accessor, GetIndex(primitive, "indices"));
   LACERTA_ASSIGN_OR_RETURN(const AccessorData data, ReadAccessor(document, accessor));
   const std::string name = "accessor " + std::to_string(accessor);
-  const bool is_unsigned = data.type == ComponentType::kUint8 || data.type == ComponentType::kUint16 ||
-                           data.type == ComponentType::kUint32;
+  const bool is_unsigned =
+      data.type == ComponentType::kUint8 || data.type == ComponentType::kUint16 || data.type == ComponentType::kUint32;
   if (data.components != 1 || !is_unsigned) return InvalidData(name + ": indices have to be unsigned integer scalars");
   corners.reserve(static_cast<size_t>(data.count));
   for (uint64_t i = 0; i < data.count; ++i) {
@@ -85,7 +87,8 @@ StatusOr<Primitive> ReadDraco(const GltfDocument& document, const Json& extensio
   LACERTA_ASSIGN_OR_RETURN(const uint64_t view, GetIndex(extension, "bufferView"));
   LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(document, view));
   const Json* attributes = Find(extension, "attributes");
-  if (attributes == nullptr || !attributes->is_object()) return InvalidData("KHR_draco_mesh_compression has no attributes");
+  if (attributes == nullptr || !attributes->is_object())
+    return InvalidData("KHR_draco_mesh_compression has no attributes");
   std::vector<DracoAttributeId> ids;
   for (const auto& [name, id] : attributes->items()) {
     const std::optional<uint64_t> index = AsIndex(&id);
@@ -116,7 +119,8 @@ Status CheckPositions(const Primitive& primitive) {
 }  // namespace
 
 const Attribute* Primitive::Find(const std::string& name) const {
-  const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.name == name; });
+  const auto found =
+      std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.name == name; });
   return found == attributes.end() ? nullptr : &*found;
 }
 

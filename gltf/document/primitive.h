@@ -19,15 +19,15 @@ struct Attribute {
 
 struct Primitive {
   uint64_t num_vertices = 0;
-  std::vector<Triangle> triangles;     // indices < num_vertices
-  std::vector<Attribute> attributes;   // of num_vertices elements each; POSITION first
+  std::vector<Triangle> triangles;    // indices < num_vertices
+  std::vector<Attribute> attributes;  // of num_vertices elements each; POSITION first
 
   const Attribute* Find(const std::string& name) const;
 };
 
-// Reads an element of meshes[].primitives: triangles, strips and fans, core accessors or KHR_draco_mesh_compression. Positions
-// are finite and indices in range afterwards.
-// Fails with kUnsupported for points and lines, kInvalidData for what breaks the format; messages name accessor and index.
+// Reads an element of meshes[].primitives: triangles, strips and fans, core accessors or KHR_draco_mesh_compression.
+// Positions are finite and indices in range afterwards. Fails with kUnsupported for points and lines, kInvalidData for
+// what breaks the format; messages name accessor and index.
 StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& primitive);
 
 // Positions (as float, normalized integers scaled) and triangles alone.

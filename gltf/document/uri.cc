@@ -69,7 +69,8 @@ StatusOr<Bytes> LoadUri(std::string_view uri, const std::string& folder) {
   const std::filesystem::path normal = relative.lexically_normal();
   const bool leaves = normal.is_absolute() || normal.empty() || *normal.begin() == "..";
   if (leaves || uri.find(':') != uri.npos || relative.string().find('\0') != std::string::npos) {
-    return Unsupported("the URI \"" + std::string(uri.substr(0, 80)) + "\" does not name a file in the folder of the asset");
+    return Unsupported("the URI \"" + std::string(uri.substr(0, 80)) +
+                       "\" does not name a file in the folder of the asset");
   }
   return ReadFile((std::filesystem::path(folder) / normal).string());
 }

@@ -10,8 +10,9 @@
 
 namespace lacerta {
 
-// Decodes a base64 "data:" URI, or reads the file that a relative URI names inside `folder`. Absolute paths, other schemes
-// and paths that leave the folder are refused with kUnsupported: an asset must not fetch what its user did not hand over.
+// Decodes a base64 "data:" URI, or reads the file that a relative URI names inside `folder`. Absolute paths, other
+// schemes and paths that leave the folder are refused with kUnsupported: an asset must not fetch what its user did not
+// hand over.
 StatusOr<Bytes> LoadUri(std::string_view uri, const std::string& folder);
 
 }  // namespace lacerta

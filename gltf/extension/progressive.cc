@@ -15,7 +15,8 @@ StatusOr<std::vector<uint64_t>> ParseIndices(const Json& object, const char* key
   values.reserve(array->size());
   for (const Json& element : *array) {
     const std::optional<uint64_t> value = AsIndex(&element);
-    if (!value.has_value()) return InvalidData(std::string("\"") + key + "\" holds something else than integers from 0 on");
+    if (!value.has_value())
+      return InvalidData(std::string("\"") + key + "\" holds something else than integers from 0 on");
     values.push_back(*value);
   }
   return values;
@@ -27,7 +28,8 @@ StatusOr<std::vector<double>> ParseNumbers(const Json& object, const char* key) 
   std::vector<double> values;
   for (const Json& element : *array) {
     const std::optional<double> value = AsNumber(&element);
-    if (!value.has_value() || !std::isfinite(*value)) return InvalidData(std::string("\"") + key + "\" holds no number");
+    if (!value.has_value() || !std::isfinite(*value))
+      return InvalidData(std::string("\"") + key + "\" holds no number");
     values.push_back(*value);
   }
   return values;
@@ -38,7 +40,8 @@ Status ParseVec3(const Json& object, const char* key, Vec3f* value) {
   if (numbers.size() != 3) return InvalidData(std::string("\"") + key + "\" does not have three numbers");
   for (int axis = 0; axis < 3; ++axis) {
     const double number = numbers[static_cast<size_t>(axis)];
-    if (std::abs(number) > std::numeric_limits<float>::max()) return InvalidData(std::string("\"") + key + "\" is too large");
+    if (std::abs(number) > std::numeric_limits<float>::max())
+      return InvalidData(std::string("\"") + key + "\" is too large");
     (*value)[axis] = static_cast<float>(number);
   }
   return Status();
@@ -66,7 +69,8 @@ Status CheckSegments(const Progressive& progressive) {
     if (segment.stream >= counts.size()) {
       return InvalidData("segments.stream: stream " + std::to_string(segment.stream) + " does not exist");
     }
-    if (segment.length > std::numeric_limits<uint64_t>::max() - sum) return InvalidData("segments.byteLength overflows");
+    if (segment.length > std::numeric_limits<uint64_t>::max() - sum)
+      return InvalidData("segments.byteLength overflows");
     sum += segment.length;
     ++counts[static_cast<size_t>(segment.stream)];
   }
@@ -83,8 +87,8 @@ Status CheckSegments(const Progressive& progressive) {
 StatusOr<Progressive> ParseUnnamed(const Json& extension) {
   LACERTA_ASSIGN_OR_RETURN(const uint64_t version, GetIndex(extension, "version"));
   if (version != kProgressiveVersion) {
-    return Unsupported("version " + std::to_string(version) + " is not known, only " + std::to_string(kProgressiveVersion) +
-                       "; a newer Lacerta may read it");
+    return Unsupported("version " + std::to_string(version) + " is not known, only " +
+                       std::to_string(kProgressiveVersion) + "; a newer Lacerta may read it");
   }
   Progressive progressive;
   LACERTA_ASSIGN_OR_RETURN(progressive.data, GetIndex(extension, "data"));

@@ -16,10 +16,10 @@ inline constexpr char kDracoName[] = "KHR_draco_mesh_compression";
 inline constexpr uint64_t kProgressiveVersion = 1;
 
 struct ProgressiveStream {
-  std::vector<uint64_t> vertex_counts;    // one per level, base first
+  std::vector<uint64_t> vertex_counts;  // one per level, base first
   std::vector<uint64_t> triangle_counts;
-  std::vector<double> errors;             // two-sided surface distance to the original, mesh units
-  Vec3f min, max;                         // of the finest level
+  std::vector<double> errors;  // two-sided surface distance to the original, mesh units
+  Vec3f min, max;              // of the finest level
   bool smooth_normals = false;
 };
 
@@ -29,13 +29,13 @@ struct Segment {
 };
 
 struct Progressive {
-  uint64_t data = 0;               // bufferView of all segments
-  std::vector<Segment> segments;   // in the order of their bytes
+  uint64_t data = 0;              // bufferView of all segments
+  std::vector<Segment> segments;  // in the order of their bytes
   std::vector<ProgressiveStream> streams;
 };
 
-// Reads and checks the extension at the root of a document: its version, every number, that streams have as many segments as levels.
-// Fails with kNotFound where there is none, kUnsupported for another version, kInvalidData.
+// Reads and checks the extension at the root of a document: its version, every number, that streams have as many
+// segments as levels. Fails with kNotFound where there is none, kUnsupported for another version, kInvalidData.
 StatusOr<Progressive> ParseProgressive(const GltfDocument& document);
 Json FormatProgressive(const Progressive& progressive);
 
@@ -48,8 +48,8 @@ struct GatheredStream {
 };
 StatusOr<GatheredStream> GatherStream(const GltfDocument& document, const Progressive& progressive, uint64_t stream);
 
-// Where the streams' parts go: all bases first, then always the next part of the stream that lowers its error most per byte.
-// part_lengths[s] and errors[s] are parallel: one per level of stream s, base first.
+// Where the streams' parts go: all bases first, then always the next part of the stream that lowers its error most per
+// byte. part_lengths[s] and errors[s] are parallel: one per level of stream s, base first.
 std::vector<Segment> OrderSegments(const std::vector<std::vector<uint64_t>>& part_lengths,
                                    const std::vector<std::vector<double>>& errors);
 

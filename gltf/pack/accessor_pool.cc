@@ -43,7 +43,8 @@ AccessorPool::AccessorPool(const GltfDocument& document, const std::vector<Place
     }
   }
   for (uint64_t i = 0; i < ArraySize(document.json, "skins"); ++i) {
-    if (const Json* matrices = Find(*FindElement(document.json, "skins", i), "inverseBindMatrices"); matrices != nullptr) {
+    if (const Json* matrices = Find(*FindElement(document.json, "skins", i), "inverseBindMatrices");
+        matrices != nullptr) {
       Count(*matrices);
     }
   }
@@ -52,8 +53,8 @@ AccessorPool::AccessorPool(const GltfDocument& document, const std::vector<Place
       Count(*samplers);
     }
   }
-  // Extensions of nodes and the like; too many is better than too few. Those of primitives that hold geometry are looked at
-  // by ReasonToKeep, and Draco's own numbers are no accessors.
+  // Extensions of nodes and the like; too many is better than too few. Those of primitives that hold geometry are
+  // looked at by ReasonToKeep, and Draco's own numbers are no accessors.
   VisitExtensions(document.json, [this](const Json& extensions) {
     if (!extensions.is_object()) return;
     for (const auto& [name, value] : extensions.items()) {

@@ -1,5 +1,5 @@
-// Accessors of primitives that are stored anew: the old ones are given back and used again, so that indices that others hold stay
-// true and no unused accessor piles up.
+// Accessors of primitives that are stored anew: the old ones are given back and used again, so that indices that others
+// hold stay true and no unused accessor piles up.
 #ifndef LACERTA_PACK_ACCESSOR_POOL_H_
 #define LACERTA_PACK_ACCESSOR_POOL_H_
 

@@ -78,7 +78,8 @@ StatusOr<TriangleMesh> DecodeLevel(const Bytes& stream, std::optional<int> level
 }
 
 // The fallback whose base Draco decodes itself: its vertices, in its order.
-StatusOr<NewGeometry> DracoFallback(const EncodedMesh& encoded, uint64_t data_buffer, uint64_t offset, GltfDocument* document) {
+StatusOr<NewGeometry> DracoFallback(const EncodedMesh& encoded, uint64_t data_buffer, uint64_t offset,
+                                    GltfDocument* document) {
   const uint64_t length = encoded.part_sizes[0];
   const Span<const uint8_t> base = Span<const uint8_t>(encoded.stream).First(static_cast<size_t>(length));
   LACERTA_ASSIGN_OR_RETURN(const uint32_t id, DracoPositionId(base));
@@ -96,8 +97,8 @@ Status StoreProgressive(const std::vector<const PrimitivePlan*>& plans, Fallback
   if (fallback != Fallback::kDraco) {
     for (const PrimitivePlan* plan : plans) {
       const bool plain = fallback == Fallback::kPlain;
-      LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, DecodeLevel(plan->progressive->stream,
-                                                                    plain ? std::optional<int>(0) : std::nullopt));
+      LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh,
+                               DecodeLevel(plan->progressive->stream, plain ? std::optional<int>(0) : std::nullopt));
       geometries.push_back(plain ? PlainGeometry(mesh, plan->smooth_normals, document) : DescribedGeometry(mesh));
     }
   }
@@ -106,8 +107,8 @@ Status StoreProgressive(const std::vector<const PrimitivePlan*>& plans, Fallback
   const uint64_t buffer = AddBuffer(std::move(transmission.data), document);
   transmission.progressive.data = AddBufferView(buffer, 0, length, document);
   for (size_t s = 0; s < plans.size() && fallback == Fallback::kDraco; ++s) {
-    LACERTA_ASSIGN_OR_RETURN(NewGeometry geometry, DracoFallback(*plans[s]->progressive, buffer,
-                                                                 transmission.base_offsets[s], document));
+    LACERTA_ASSIGN_OR_RETURN(NewGeometry geometry,
+                             DracoFallback(*plans[s]->progressive, buffer, transmission.base_offsets[s], document));
     geometries.push_back(std::move(geometry));
   }
   for (size_t s = 0; s < plans.size(); ++s) {
@@ -127,7 +128,8 @@ void DeclareExtensions(Fallback fallback, bool progressive, GltfDocument* docume
 
 StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& options) {
   if (options.fallback == Fallback::kDraco && options.encode.form != StreamForm::kDraco) {
-    return InvalidArgument("the fallback \"draco\" needs the Draco form of the stream; choose another fallback for the custom form");
+    return InvalidArgument(
+        "the fallback \"draco\" needs the Draco form of the stream; choose another fallback for the custom form");
   }
   if (UsesExtension(document, kProgressiveName)) {
     return Unsupported("the asset is packed already; unpack it first, or pack the original, which loses less");

@@ -27,7 +27,8 @@ std::string ReasonToKeep(const GltfDocument& document, const Json& primitive) {
   if (ArraySize(primitive, "targets") > 0) return "has morph targets, which refer to its vertices by their order";
   if (const Json* extensions = Find(primitive, "extensions"); extensions != nullptr && extensions->is_object()) {
     for (const auto& [name, value] : extensions->items()) {
-      if (name != kDracoName && name != "KHR_materials_variants") return "has the extension " + name + ", which may refer to its vertices";
+      if (name != kDracoName && name != "KHR_materials_variants")
+        return "has the extension " + name + ", which may refer to its vertices";
     }
   }
   if (const Json* attributes = Find(primitive, "attributes"); attributes != nullptr && attributes->is_object()) {
@@ -43,7 +44,8 @@ uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primi
   const Json* extensions = Find(json, "extensions");
   const Json* draco = extensions == nullptr ? nullptr : Find(*extensions, kDracoName);
   if (draco != nullptr) {
-    const StatusOr<Span<const uint8_t>> bytes = BufferViewBytes(document, AsIndex(Find(*draco, "bufferView")).value_or(0));
+    const StatusOr<Span<const uint8_t>> bytes =
+        BufferViewBytes(document, AsIndex(Find(*draco, "bufferView")).value_or(0));
     return bytes.ok() ? bytes.value().size() : 0;
   }
   uint64_t sum = 0;

@@ -9,17 +9,17 @@
 
 #include "document/draco_primitive.h"
 #include "document/gltf_document.h"
-#include "document/primitive.h"
 #include "document/place.h"
+#include "document/primitive.h"
 #include "lacerta/gltf.h"
 
 namespace lacerta {
 
 // Primitives that show the same accessors are stored once.
 struct PrimitivePlan {
-  std::vector<Place> places;                    // at least one
-  PrimitiveReport report;                       // of the first place
-  bool smooth_normals = false;                  // NORMAL was dropped, readers derive it
+  std::vector<Place> places;    // at least one
+  PrimitiveReport report;       // of the first place
+  bool smooth_normals = false;  // NORMAL was dropped, readers derive it
   std::optional<EncodedMesh> progressive;
   std::optional<DracoEncoded> draco;
 };

@@ -28,8 +28,8 @@ NewGeometry PlainGeometry(const Primitive& primitive, GltfDocument* document) {
     geometry.attributes.push_back(
         {attribute.name, MakeAccessor(attribute.data, AccessorUse::kAttribute, bounds, document)});
   }
-  geometry.indices =
-      MakeAccessor(MakeIndexAccessor(primitive.triangles, primitive.num_vertices), AccessorUse::kIndices, false, document);
+  geometry.indices = MakeAccessor(MakeIndexAccessor(primitive.triangles, primitive.num_vertices), AccessorUse::kIndices,
+                                  false, document);
   return geometry;
 }
 
@@ -49,7 +49,8 @@ NewGeometry DescribedGeometry(const Primitive& primitive) {
   return geometry;
 }
 
-void ReplaceGeometry(const std::vector<Place>& places, NewGeometry geometry, AccessorPool* pool, GltfDocument* document) {
+void ReplaceGeometry(const std::vector<Place>& places, NewGeometry geometry, AccessorPool* pool,
+                     GltfDocument* document) {
   const Json old = PrimitiveAt(document, places[0]);
   pool->Release(old, document);
   const Json* old_attributes = Find(old, "attributes");

@@ -35,7 +35,8 @@ NewGeometry DescribedGeometry(const TriangleMesh& mesh);
 NewGeometry DescribedGeometry(const Primitive& primitive);
 
 // All `places` show the same geometry so far and get the same new one. What compressed it before goes.
-void ReplaceGeometry(const std::vector<Place>& places, NewGeometry geometry, AccessorPool* pool, GltfDocument* document);
+void ReplaceGeometry(const std::vector<Place>& places, NewGeometry geometry, AccessorPool* pool,
+                     GltfDocument* document);
 
 // The bufferViews that hold Draco streams.
 std::set<uint64_t> DracoViews(const GltfDocument& document);

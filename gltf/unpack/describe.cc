@@ -13,7 +13,8 @@ namespace {
 Fallback FallbackOf(const GltfDocument& document, const Json& primitive) {
   if (PrimitiveExtension(primitive, kDracoName) != nullptr) return Fallback::kDraco;
   const Json* attributes = Find(primitive, "attributes");
-  const std::optional<uint64_t> position = attributes == nullptr ? std::nullopt : AsIndex(Find(*attributes, "POSITION"));
+  const std::optional<uint64_t> position =
+      attributes == nullptr ? std::nullopt : AsIndex(Find(*attributes, "POSITION"));
   return position.has_value() && !ViewsOfAccessor(document, *position).empty() ? Fallback::kPlain : Fallback::kNone;
 }
 

@@ -56,10 +56,18 @@ Transform LocalTransform(const Json& node) {
   const auto t = Numbers<3>(node, "translation", {0, 0, 0});
   const auto [x, y, z, w] = Numbers<4>(node, "rotation", {0, 0, 0, 1});
   const auto s = Numbers<3>(node, "scale", {1, 1, 1});
-  return {s[0] * (1 - 2 * (y * y + z * z)), s[0] * 2 * (x * y + z * w),       s[0] * 2 * (x * z - y * w),
-          s[1] * 2 * (x * y - z * w),       s[1] * (1 - 2 * (x * x + z * z)), s[1] * 2 * (y * z + x * w),
-          s[2] * 2 * (x * z + y * w),       s[2] * 2 * (y * z - x * w),       s[2] * (1 - 2 * (x * x + y * y)),
-          t[0],                             t[1],                             t[2]};
+  return {s[0] * (1 - 2 * (y * y + z * z)),
+          s[0] * 2 * (x * y + z * w),
+          s[0] * 2 * (x * z - y * w),
+          s[1] * 2 * (x * y - z * w),
+          s[1] * (1 - 2 * (x * x + z * z)),
+          s[1] * 2 * (y * z + x * w),
+          s[2] * 2 * (x * z + y * w),
+          s[2] * 2 * (y * z - x * w),
+          s[2] * (1 - 2 * (x * x + y * y)),
+          t[0],
+          t[1],
+          t[2]};
 }
 
 struct Instance {
@@ -89,7 +97,8 @@ StatusOr<std::vector<Instance>> CollectInstances(const GltfDocument& document) {
     const auto [index, parent] = stack.back();
     stack.pop_back();
     const Json* node = FindElement(document.json, "nodes", index);
-    if (node == nullptr) return InvalidData("a node refers to node " + std::to_string(index) + ", which does not exist");
+    if (node == nullptr)
+      return InvalidData("a node refers to node " + std::to_string(index) + ", which does not exist");
     if (seen[static_cast<size_t>(index)]) {
       return InvalidData("node " + std::to_string(index) + " has two parents or is its own ancestor");
     }

@@ -47,18 +47,21 @@ bool AccessorVec3(const Json& accessor, const char* key, Vec3f* value) {
 // The fallback must still be the base of the stream, else somebody changed the one without knowing of the other.
 Status CheckFallback(const GltfDocument& document, const Json& primitive, const GatheredStream& stream,
                      const TriangleMesh& base) {
-  const Status edited = InvalidData("the fallback geometry is no longer the base of the stream; a tool that does not know " +
-                                    std::string(kProgressiveName) + " edited the asset");
+  const Status edited =
+      InvalidData("the fallback geometry is no longer the base of the stream; a tool that does not know " +
+                  std::string(kProgressiveName) + " edited the asset");
   if (const Json* draco = PrimitiveExtension(primitive, kDracoName); draco != nullptr) {
     LACERTA_ASSIGN_OR_RETURN(const uint64_t view, GetIndex(*draco, "bufferView"));
     LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(document, view));
-    if (bytes.size() != stream.base_length || std::memcmp(bytes.data(), stream.bytes.data(), bytes.size()) != 0) return edited;
+    if (bytes.size() != stream.base_length || std::memcmp(bytes.data(), stream.bytes.data(), bytes.size()) != 0)
+      return edited;
   }
   const Json* attributes = Find(primitive, "attributes");
   const std::optional<uint64_t> index = attributes == nullptr ? std::nullopt : AsIndex(Find(*attributes, "POSITION"));
   const Json* accessor = index.has_value() ? FindElement(document.json, "accessors", *index) : nullptr;
   Bounds bounds;
-  if (accessor == nullptr || !AccessorVec3(*accessor, "min", &bounds.min) || !AccessorVec3(*accessor, "max", &bounds.max)) {
+  if (accessor == nullptr || !AccessorVec3(*accessor, "min", &bounds.min) ||
+      !AccessorVec3(*accessor, "max", &bounds.max)) {
     return InvalidData("the fallback has no accessor POSITION with min and max");
   }
   if (!Near(BoundsOf(base.positions), bounds)) return edited;
@@ -84,7 +87,8 @@ Status CheckCounts(const ProgressiveStream& announced, const DecodedMesh& decode
   const auto level = static_cast<size_t>(decoded.level);
   if (level >= announced.vertex_counts.size() || announced.vertex_counts[level] != decoded.mesh.positions.size() ||
       announced.triangle_counts[level] != decoded.mesh.triangles.size()) {
-    return InvalidData("level " + std::to_string(decoded.level) + " of the stream does not have the size that the asset announces");
+    return InvalidData("level " + std::to_string(decoded.level) +
+                       " of the stream does not have the size that the asset announces");
   }
   const bool finest = level + 1 == announced.vertex_counts.size();
   if (finest && !Near(BoundsOf(decoded.mesh.positions), {announced.min, announced.max})) {
@@ -99,8 +103,10 @@ StatusOr<ProgressiveSurface> ReadStream(const GltfDocument& document, const Stat
   const Json& extension = *PrimitiveExtension(primitive, kProgressiveName);
   LACERTA_ASSIGN_OR_RETURN(const uint64_t index, GetIndex(extension, "stream"));
   LACERTA_ASSIGN_OR_RETURN(const uint64_t group, GetIndex(extension, "group", 0));
-  if (index >= progressive.value().streams.size()) return InvalidData("stream " + std::to_string(index) + " does not exist");
-  if (group != 0) return Unsupported("group " + std::to_string(group) + ": streams of several groups are not read by this version");
+  if (index >= progressive.value().streams.size())
+    return InvalidData("stream " + std::to_string(index) + " does not exist");
+  if (group != 0)
+    return Unsupported("group " + std::to_string(group) + ": streams of several groups are not read by this version");
   const ProgressiveStream& announced = progressive.value().streams[static_cast<size_t>(index)];
   LACERTA_ASSIGN_OR_RETURN(const GatheredStream stream, GatherStream(document, progressive.value(), index));
   if (HasFallback(document, primitive)) {
@@ -119,8 +125,8 @@ StatusOr<ProgressiveSurface> ReadStream(const GltfDocument& document, const Stat
   surface.surface = std::move(decoded.mesh);
   const int wanted = std::min(options.level.value_or(surface.num_levels), surface.num_levels);
   if (surface.level < wanted) {
-    surface.note = "decoded to level " + std::to_string(surface.level) + " of " + std::to_string(surface.num_levels) + ": " +
-                   (decoded.refinement.ok() ? "the rest of the data was cut off" : decoded.refinement.message());
+    surface.note = "decoded to level " + std::to_string(surface.level) + " of " + std::to_string(surface.num_levels) +
+                   ": " + (decoded.refinement.ok() ? "the rest of the data was cut off" : decoded.refinement.message());
   }
   return surface;
 }

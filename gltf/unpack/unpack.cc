@@ -38,7 +38,8 @@ void RestoreUnits(Primitive* primitive) {
     AccessorData& data = attribute.data;
     if (data.type != ComponentType::kFloat) continue;
     if (attribute.name == "NORMAL" && data.components == 3) Normalize(3, false, &data);
-    if (attribute.name == "WEIGHTS_0" && primitive->Find("WEIGHTS_1") == nullptr) Normalize(data.components, true, &data);
+    if (attribute.name == "WEIGHTS_0" && primitive->Find("WEIGHTS_1") == nullptr)
+      Normalize(data.components, true, &data);
     if (attribute.name == "TANGENT" && data.components == 4) {
       Normalize(3, false, &data);
       for (uint64_t i = 0; i < data.count; ++i) {
@@ -89,7 +90,8 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
     if (PrimitiveExtension(primitive, kProgressiveName) != nullptr) {
       StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, places[0], options);
       if (!surface.ok()) return surface.status().WithContext(PlaceName(document, places[0]));
-      if (!surface.value().note.empty()) result.notes.push_back(PlaceName(document, places[0]) + ": " + surface.value().note);
+      if (!surface.value().note.empty())
+        result.notes.push_back(PlaceName(document, places[0]) + ": " + surface.value().note);
       ReplaceGeometry(places, PlainGeometry(surface.value().surface, surface.value().smooth_normals, &document), &pool,
                       &document);
     } else if (PrimitiveExtension(primitive, kDracoName) != nullptr) {

@@ -8,12 +8,12 @@ namespace lacerta::cli {
 
 enum ExitCode {
   kExitOk = 0,
-  kExitUsage = 1,        // options that make no sense
-  kExitBadInput = 2,     // a file that breaks its format or the limits
-  kExitUnsupported = 3,  // a legal file that this version does not handle
-  kExitIo = 4,           // a file that is missing, or reading or writing failed
-  kExitTargetMissed = 5, // the best possible output was written, but it misses the target
-  kExitInternal = 6,     // a bug of ours
+  kExitUsage = 1,         // options that make no sense
+  kExitBadInput = 2,      // a file that breaks its format or the limits
+  kExitUnsupported = 3,   // a legal file that this version does not handle
+  kExitIo = 4,            // a file that is missing, or reading or writing failed
+  kExitTargetMissed = 5,  // the best possible output was written, but it misses the target
+  kExitInternal = 6,      // a bug of ours
 };
 
 // The table above as text for --help.

@@ -1,7 +1,5 @@
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -25,9 +23,9 @@ struct PackArguments {
   double bits_per_vertex = 0.0;
   double psnr = 0.0;
   double error = 0.0;
-  Fallback fallback = Fallback::kDraco;
-  StreamForm form = StreamForm::kDraco;
-  EncodeMode mode = EncodeMode::kDefault;
+  std::string fallback = "draco";  // one of the names that AddPackCommand lists, like the next two
+  std::string form = "draco";
+  std::string mode = "default";
   bool json = false;
 };
 
@@ -90,12 +88,16 @@ StatusOr<int> PackStream(const PackArguments& arguments, const EncodeOptions& op
   const EncodeReport& report = encoded.value().report;
   const bool missed = MissesTarget(options.target, report);
   if (arguments.json) {
-    PrintJson({{"output", arguments.output}, {"bytes", encoded.value().stream.size()}, {"targetMet", !missed}, {"encode", ToJson(report)}});
+    PrintJson({{"output", arguments.output},
+               {"bytes", encoded.value().stream.size()},
+               {"targetMet", !missed},
+               {"encode", ToJson(report)}});
   } else if (StdoutIsTerminal()) {
     PrintLevels(report);
     if (!report.reason.empty()) std::printf("note: %s\n", report.reason.c_str());
   }
-  if (missed) std::fprintf(stderr, "lacerta: %s misses the target: %s\n", arguments.output.c_str(), report.reason.c_str());
+  if (missed)
+    std::fprintf(stderr, "lacerta: %s misses the target: %s\n", arguments.output.c_str(), report.reason.c_str());
   return missed ? kExitTargetMissed : kExitOk;
 }
 
@@ -111,7 +113,8 @@ StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& 
 StatusOr<int> PackAsset(const PackArguments& arguments, const EncodeOptions& encode) {
   PackOptions options;
   options.encode = encode;
-  options.fallback = arguments.fallback;
+  if (arguments.fallback == "plain") options.fallback = Fallback::kPlain;
+  if (arguments.fallback == "none") options.fallback = Fallback::kNone;
   options.folder = std::filesystem::path(arguments.input).parent_path().string();
   uint64_t input_bytes = 0;
   const StatusOr<PackResult> packed = PackAny(arguments, options, &input_bytes);
@@ -126,7 +129,8 @@ StatusOr<int> PackAsset(const PackArguments& arguments, const EncodeOptions& enc
   } else if (StdoutIsTerminal()) {
     PrintPackReport(arguments, report, input_bytes, packed.value().glb.size());
   }
-  if (missed) std::fprintf(stderr, "lacerta: %s misses the target; see the report for the reason\n", arguments.output.c_str());
+  if (missed)
+    std::fprintf(stderr, "lacerta: %s misses the target; see the report for the reason\n", arguments.output.c_str());
   return missed ? kExitTargetMissed : kExitOk;
 }
 
@@ -134,8 +138,8 @@ int RunPack(const PackArguments& arguments) {
   ProgressLine progress;
   EncodeOptions options;
   options.target = Target(arguments);
-  options.form = arguments.form;
-  options.mode = arguments.mode;
+  options.form = arguments.form == "custom" ? StreamForm::kCustom : StreamForm::kDraco;
+  options.mode = arguments.mode == "paper" ? EncodeMode::kPaper : EncodeMode::kDefault;
   options.progress = progress.Callback();
   const std::string extension = Extension(arguments.output);
   StatusOr<int> result = InvalidArgument(arguments.output + ": the output has to be a .glb or .drc file");
@@ -152,18 +156,22 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   pack->add_option("IN", arguments->input, "A .glb, .gltf, .obj, .ply, .off, .stl or .drc file")->required();
   pack->add_option("-o,--output", arguments->output, "A .glb asset or a bare .drc stream")->required();
   CLI::Option_group* target = pack->add_option_group("target", "What to aim at (default: --psnr 70)");
-  target->add_option("--bytes", arguments->bytes, "At most this many bytes of geometry, within 2 %")->check(CLI::PositiveNumber);
-  target->add_option("--bpv", arguments->bits_per_vertex, "At most this many bits per vertex of the input")->check(CLI::PositiveNumber);
-  target->add_option("--psnr", arguments->psnr, "At least this PSNR in dB, 20 log10(diagonal / error)")->check(CLI::PositiveNumber);
-  target->add_option("--error", arguments->error, "At most this surface error, as a share of the diagonal")->check(CLI::PositiveNumber);
+  target->add_option("--bytes", arguments->bytes, "At most this many bytes of geometry, within 2 %")
+      ->check(CLI::PositiveNumber);
+  target->add_option("--bpv", arguments->bits_per_vertex, "At most this many bits per vertex of the input")
+      ->check(CLI::PositiveNumber);
+  target->add_option("--psnr", arguments->psnr, "At least this PSNR in dB, 20 log10(diagonal / error)")
+      ->check(CLI::PositiveNumber);
+  target->add_option("--error", arguments->error, "At most this surface error, as a share of the diagonal")
+      ->check(CLI::PositiveNumber);
   target->require_option(0, 1);
-  pack->add_option("--fallback", arguments->fallback, "What readers without the extension show (.glb): draco, plain or none")
-      ->transform(CLI::Transformer(
-          std::map<std::string, Fallback>{{"draco", Fallback::kDraco}, {"plain", Fallback::kPlain}, {"none", Fallback::kNone}}));
-  pack->add_option("--form", arguments->form, "draco: every Draco reader shows the base; custom: only Lacerta opens it (.drc)")
-      ->transform(CLI::Transformer(std::map<std::string, StreamForm>{{"draco", StreamForm::kDraco}, {"custom", StreamForm::kCustom}}));
+  pack->add_option("--fallback", arguments->fallback, "What readers without the extension show (.glb; default: draco)")
+      ->check(CLI::IsMember({"draco", "plain", "none"}));
+  pack->add_option("--form", arguments->form,
+                   "draco (default): every Draco reader shows the base; custom: only Lacerta opens it")
+      ->check(CLI::IsMember({"draco", "custom"}));
   pack->add_option("--mode", arguments->mode, "default, or paper: as published, open loop")
-      ->transform(CLI::Transformer(std::map<std::string, EncodeMode>{{"default", EncodeMode::kDefault}, {"paper", EncodeMode::kPaper}}));
+      ->check(CLI::IsMember({"default", "paper"}));
   pack->add_flag("--json", arguments->json, "Print a report as JSON");
   pack->footer(kExitCodeHelp);
   pack->callback([arguments, exit_code] { *exit_code = RunPack(*arguments); });

@@ -77,7 +77,8 @@ void PrintTable(const std::vector<std::string>& header, const std::vector<std::v
     for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   }
   const auto print_row = [&](const std::vector<std::string>& row) {
-    for (size_t i = 0; i < row.size(); ++i) std::printf("%s%*s", i == 0 ? "" : "  ", static_cast<int>(widths[i]), row[i].c_str());
+    for (size_t i = 0; i < row.size(); ++i)
+      std::printf("%s%*s", i == 0 ? "" : "  ", static_cast<int>(widths[i]), row[i].c_str());
     std::printf("\n");
   };
   print_row(header);
@@ -124,7 +125,8 @@ void PrintLevels(const EncodeReport& report) {
   std::vector<std::vector<std::string>> rows;
   for (size_t i = 0; i < report.levels.size(); ++i) {
     const LevelReport& level = report.levels[i];
-    const double bpv = 8.0 * static_cast<double>(level.bytes) / static_cast<double>(std::max<uint64_t>(report.input_vertices, 1));
+    const double bpv =
+        8.0 * static_cast<double>(level.bytes) / static_cast<double>(std::max<uint64_t>(report.input_vertices, 1));
     rows.push_back({std::to_string(i), std::to_string(level.triangles), std::to_string(level.bytes), Fixed(bpv, 3),
                     Short(level.error, 4), Fixed(level.psnr, 2)});
   }

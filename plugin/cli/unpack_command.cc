@@ -87,9 +87,12 @@ void AddUnpackCommand(CLI::App* app, int* exit_code) {
   const auto arguments = std::make_shared<UnpackArguments>();
   CLI::App* unpack = app->add_subcommand("unpack", "Turn a packed file into a plain one that every tool reads");
   unpack->add_option("IN", arguments->input, "A .glb, .gltf or .drc file")->required();
-  unpack->add_option("-o,--output", arguments->output, "A .glb, .ply or .obj file; the latter two hold the default scene as one mesh")
+  unpack
+      ->add_option("-o,--output", arguments->output,
+                   "A .glb, .ply or .obj file; the latter two hold the default scene as one mesh")
       ->required();
-  unpack->add_option("--level", arguments->level, "Level to stop at, 0 = base (default: the finest)")->check(CLI::NonNegativeNumber);
+  unpack->add_option("--level", arguments->level, "Level to stop at, 0 = base (default: the finest)")
+      ->check(CLI::NonNegativeNumber);
   unpack->add_flag("--json", arguments->json, "Print a report as JSON");
   unpack->footer(kExitCodeHelp);
   unpack->callback([arguments, exit_code] { *exit_code = RunUnpack(*arguments); });

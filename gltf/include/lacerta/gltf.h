@@ -1,5 +1,6 @@
-// glTF assets with progressive meshes: packing, unpacking, looking inside. The extension LACERTA_mesh_progressive is described in
-// gltf/LACERTA_mesh_progressive/README.md. No type of a glTF library in sight: assets travel as the bytes of their files.
+// glTF assets with progressive meshes: packing, unpacking, looking inside. The extension LACERTA_mesh_progressive is
+// described in gltf/LACERTA_mesh_progressive/README.md. No type of a glTF library in sight: assets travel as the bytes
+// of their files.
 #ifndef LACERTA_GLTF_H_
 #define LACERTA_GLTF_H_
 
@@ -36,14 +37,14 @@ enum class PrimitiveStorage {
 };
 
 struct PrimitiveReport {
-  uint64_t mesh = 0;       // index of the glTF mesh, and of the primitive in it
+  uint64_t mesh = 0;  // index of the glTF mesh, and of the primitive in it
   uint64_t primitive = 0;
-  std::string name;        // of the mesh; may be empty
+  std::string name;  // of the mesh; may be empty
   PrimitiveStorage storage = PrimitiveStorage::kUntouched;
-  std::string reason;      // why it is not progressive, or what EncodeMesh had to say; else empty
+  std::string reason;         // why it is not progressive, or what EncodeMesh had to say; else empty
   uint64_t bytes_before = 0;  // of its attributes and indices
   uint64_t bytes_after = 0;
-  EncodeReport encode;     // of progressive ones
+  EncodeReport encode;  // of progressive ones
 };
 
 struct PackReport {
@@ -56,12 +57,12 @@ struct PackResult {
   PackReport report;
 };
 
-// Packs a .glb or .gltf. Every mesh of one primitive with positions only (and normals that can be derived from them) becomes
-// progressive; other triangles are stored as KHR_draco_mesh_compression, and what neither can hold stays as it was, each with its
-// reason in the report. All else in the asset passes through: nodes, materials, images byte for byte, animations, skins, extras,
-// unknown extensions.
-// Fails with kInvalidData, naming mesh, primitive, accessor and index; kUnsupported for compressions and versions that it does not
-// know; kInvalidArgument for options that do not go together.
+// Packs a .glb or .gltf. Every mesh of one primitive with positions only (and normals that can be derived from them)
+// becomes progressive; other triangles are stored as KHR_draco_mesh_compression, and what neither can hold stays as it
+// was, each with its reason in the report. All else in the asset passes through: nodes, materials, images byte for
+// byte, animations, skins, extras, unknown extensions. Fails with kInvalidData, naming mesh, primitive, accessor and
+// index; kUnsupported for compressions and versions that it does not know; kInvalidArgument for options that do not go
+// together.
 StatusOr<PackResult> PackGltf(Span<const uint8_t> asset, const PackOptions& options);
 
 // Packs one mesh as an asset of its own. `name` may be empty. Fails like EncodeMesh.
@@ -88,8 +89,9 @@ struct ProgressiveSurface {
   std::string note;             // why the level is not the one asked for, or why the fallback was drawn; else empty
 };
 
-// All progressive primitives. A reference that leads nowhere, a checksum or bounds that do not match and the like make the reader
-// fall back to the core or KHR_draco geometry of that primitive and say so in its note; it fails only where there is no such geometry.
+// All progressive primitives. A reference that leads nowhere, a checksum or bounds that do not match and the like make
+// the reader fall back to the core or KHR_draco geometry of that primitive and say so in its note; it fails only where
+// there is no such geometry.
 StatusOr<std::vector<ProgressiveSurface>> ReadProgressive(Span<const uint8_t> asset, const UnpackOptions& options);
 
 struct UnpackResult {
@@ -97,7 +99,8 @@ struct UnpackResult {
   std::vector<std::string> notes;  // of ReadProgressive, each with its mesh
 };
 
-// The asset in core glTF: progressive and Draco-compressed primitives become plain accessors. Fails like ReadProgressive.
+// The asset in core glTF: progressive and Draco-compressed primitives become plain accessors. Fails like
+// ReadProgressive.
 StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions& options);
 
 struct FlattenResult {
@@ -129,14 +132,14 @@ struct AssetInfo {
   std::vector<StreamInfo> streams;
   Fallback fallback = Fallback::kDraco;  // of the first stream; means nothing where there is no stream
   uint64_t num_primitives = 0;
-  uint64_t num_draco_primitives = 0;     // with KHR_draco_mesh_compression but not progressive
+  uint64_t num_draco_primitives = 0;  // with KHR_draco_mesh_compression but not progressive
 };
 
 // What is inside, without decoding. Fails with kInvalidData when the extension contradicts itself.
 StatusOr<AssetInfo> DescribeGltf(Span<const uint8_t> asset, const std::string& folder);
 
-// What a bare stream (.drc) holds: either form of ours, or a stock Draco mesh with its one level. Where the refinement ends early,
-// the levels after its end are left out. Fails like DecodeMesh.
+// What a bare stream (.drc) holds: either form of ours, or a stock Draco mesh with its one level. Where the refinement
+// ends early, the levels after its end are left out. Fails like DecodeMesh.
 StatusOr<StreamInfo> DescribeStream(Span<const uint8_t> stream, const DecodeLimits& limits);
 
 }  // namespace lacerta
