@@ -68,6 +68,45 @@ StatusOr<Bytes> LoadBuffer(const Json& buffer, bool first, const Chunks& chunks,
   return bytes;
 }
 
+// Members named "extensions" are objects wherever they are, but in extras, which are anybody's.
+bool ExtensionsAreObjects(const Json& json) {
+  if (!json.is_structured()) return true;
+  if (json.is_array()) return std::all_of(json.begin(), json.end(), ExtensionsAreObjects);
+  for (const auto& [key, value] : json.items()) {
+    if (key == "extras") continue;
+    if (key == "extensions" && !value.is_object()) return false;
+    if (!ExtensionsAreObjects(value)) return false;
+  }
+  return true;
+}
+
+bool IsArrayOfObjects(const Json& json) {
+  return json.is_array() &&
+         std::all_of(json.begin(), json.end(), [](const Json& element) { return element.is_object(); });
+}
+
+// So that what is changed later may be taken for what it should be.
+Status CheckShape(const Json& json) {
+  for (const char* key :
+       {"accessors", "animations", "buffers", "bufferViews", "images", "meshes", "nodes", "scenes", "skins"}) {
+    const Json* array = Find(json, key);
+    if (array != nullptr && !IsArrayOfObjects(*array))
+      return InvalidData(std::string("\"") + key + "\" is no array of objects");
+  }
+  for (uint64_t m = 0; m < ArraySize(json, "meshes"); ++m) {
+    const Json* primitives = Find(*FindElement(json, "meshes", m), "primitives");
+    if (primitives == nullptr || !IsArrayOfObjects(*primitives)) {
+      return InvalidData("mesh " + std::to_string(m) + ": \"primitives\" is no array of objects");
+    }
+  }
+  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+    const Json* list = Find(json, key);
+    if (list != nullptr && !list->is_array()) return InvalidData(std::string("\"") + key + "\" is no array");
+  }
+  if (!ExtensionsAreObjects(json)) return InvalidData("a member \"extensions\" is no object");
+  return Status();
+}
+
 Status CheckReadable(const GltfDocument& document) {
   const Json* asset = Find(document.json, "asset");
   const std::string version = asset == nullptr ? "" : AsString(Find(*asset, "version"));
@@ -92,6 +131,7 @@ StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& f
   GltfDocument document;
   LACERTA_ASSIGN_OR_RETURN(document.json, ParseJson(chunks.json));
   LACERTA_RETURN_IF_ERROR(CheckReadable(document));
+  LACERTA_RETURN_IF_ERROR(CheckShape(document.json));
   for (uint64_t i = 0; i < ArraySize(document.json, "buffers"); ++i) {
     StatusOr<Bytes> buffer = LoadBuffer(*FindElement(document.json, "buffers", i), i == 0, chunks, folder);
     if (!buffer.ok()) return buffer.status().WithContext("buffer " + std::to_string(i));

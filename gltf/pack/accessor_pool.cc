@@ -1,6 +1,7 @@
 #include "pack/accessor_pool.h"
 
 #include <functional>
+#include <string>
 #include <utility>
 
 #include "document/buffer_edit.h"
@@ -32,6 +33,14 @@ void VisitExtensions(const Json& json, const std::function<void(const Json&)>& v
   }
 }
 
+// Extensions known to refer to no accessor of their own.
+bool NamesNoAccessors(const std::string& name) {
+  for (const char* prefix : {"KHR_", "LACERTA_", "MSFT_", "EXT_texture_", "EXT_lights_"}) {
+    if (name.rfind(prefix, 0) == 0) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 AccessorPool::AccessorPool(const GltfDocument& document, const std::vector<Place>& geometries)
@@ -58,8 +67,7 @@ AccessorPool::AccessorPool(const GltfDocument& document, const std::vector<Place
   VisitExtensions(document.json, [this](const Json& extensions) {
     if (!extensions.is_object()) return;
     for (const auto& [name, value] : extensions.items()) {
-      // None of Khronos' extensions and not ours refer to accessors.
-      if (name.rfind("KHR_", 0) != 0 && name.rfind("LACERTA_", 0) != 0) Count(value);
+      if (!NamesNoAccessors(name)) Count(value);
     }
   });
 }
