@@ -1,8 +1,9 @@
-// Adaptive probability of one binary decision, shared by range encoder and range decoder (docs/format.md, "Bit models").
+// Adaptive probability of one binary decision, shared by range encoder and range decoder (docs/format.md, "Bit
+// models").
 //
-// Two estimates follow the bits, one quickly and one slowly, and the probability in use is their mean. Both begin as running
-// averages (the n-th bit weighs about 1 / (n + 1)) until their own lower bound of the weight is reached, so that a model is
-// useful after a handful of bits: sets of a few hundred coefficients are the rule at coarse levels.
+// Two estimates follow the bits, one quickly and one slowly, and the probability in use is their mean. Both begin as
+// running averages (the n-th bit weighs about 1 / (n + 1)) until their own lower bound of the weight is reached, so
+// that a model is useful after a handful of bits: sets of a few hundred coefficients are the rule at coarse levels.
 #ifndef LACERTA_COMMON_BIT_MODEL_H_
 #define LACERTA_COMMON_BIT_MODEL_H_
 

@@ -5,6 +5,7 @@
 namespace lacerta {
 
 std::vector<float> ExtraordinaryStencil(int valence) {
+  if (valence == 2) return {3.0f / 8, -1.0f / 8};
   if (valence == 3) return {5.0f / 12, -1.0f / 12, -1.0f / 12};
   if (valence == 4) return {3.0f / 8, 0.0f, -1.0f / 8, 0.0f};
   std::vector<float> weights(valence);
@@ -18,7 +19,7 @@ std::vector<float> ExtraordinaryStencil(int valence) {
 StencilTable::StencilTable(const Topology& topology) {
   for (uint32_t v = 0; v < topology.num_vertices; ++v) {
     const size_t valence = topology.valence[v];
-    if (topology.on_border[v] || valence == 6) continue;
+    if (topology.on_border[v] || !IsExtraordinary(topology, v)) continue;
     if (weights_.size() <= valence) weights_.resize(valence + 1);
     if (weights_[valence].empty()) weights_[valence] = ExtraordinaryStencil(static_cast<int>(valence));
   }

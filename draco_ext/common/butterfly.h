@@ -4,6 +4,8 @@
 // Departures, so that the stencil exists for every edge of a mesh with border:
 //   border edge           the 4-point rule (-1/16, 9/16, 9/16, -1/16) along the border curve alone
 //   an end on the border  the regular 8-point rule, where a face that is missing is replaced by the reflection of its triangle
+//   valence 2             3/4, 3/8, -1/8: Zorin's rule for valence 4 with each of its two spokes of no weight left out
+//   valence over 256      counts as regular, so that the work per edge is bounded on hostile connectivity
 #ifndef LACERTA_COMMON_BUTTERFLY_H_
 #define LACERTA_COMMON_BUTTERFLY_H_
 
@@ -17,9 +19,17 @@
 
 namespace lacerta {
 
-// Weights of the ring of an extraordinary vertex of valence K >= 3; entry j belongs to the j-th neighbor counted from the
-// other end of the edge. The vertex itself has weight 3/4.
+// Vertices of more edges get the regular stencil (part of the format).
+inline constexpr int kMaxStencilValence = 256;
+
+// Weights of the ring of an extraordinary vertex of valence K >= 2; entry j belongs to the j-th neighbor counted from the
+// other end of the edge. They sum to 1/4; the vertex itself has weight 3/4.
 std::vector<float> ExtraordinaryStencil(int valence);
+
+// Whether edges at an interior vertex are predicted by its extraordinary stencil.
+inline bool IsExtraordinary(const Topology& t, uint32_t vertex) {
+  return t.valence[vertex] != 6 && t.valence[vertex] <= kMaxStencilValence;
+}
 
 // Extraordinary stencils of the valences of one mesh, made once.
 class StencilTable {
@@ -107,7 +117,7 @@ void VisitStencil(const Topology& t, const StencilTable& table, uint32_t edge, c
   if (t.edge_faces[edge][1] == kNone) return VisitBorder(t, edge, visit);
   const auto& [a, b] = t.edges[edge];
   if (t.on_border[a] || t.on_border[b]) return VisitRegular(t, edge, 1.0f, visit);
-  const bool a_extraordinary = t.valence[a] != 6, b_extraordinary = t.valence[b] != 6;
+  const bool a_extraordinary = IsExtraordinary(t, a), b_extraordinary = IsExtraordinary(t, b);
   if (!a_extraordinary && !b_extraordinary) return VisitRegular(t, edge, 1.0f, visit);
   const float scale = a_extraordinary && b_extraordinary ? 0.5f : 1.0f;
   if (a_extraordinary) VisitExtraordinary(t, table, edge, a, scale, visit);

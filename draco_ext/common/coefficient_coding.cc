@@ -6,70 +6,83 @@ namespace lacerta {
 namespace {
 
 // Larger magnitudes count as this one in contexts, so that sums stay far from 2^32.
-constexpr uint32_t kMaxCountedMagnitude = 1u << 12;
-constexpr uint32_t kMaxForecast = 16 * kMaxCountedMagnitude;
+constexpr int32_t kMaxCountedMagnitude = 1 << 12;
+constexpr uint32_t kMaxForecast = 16u << 12;
+// A forecast counts as much as so many neighbors.
+constexpr uint32_t kForecastWeight = 2;
+
+int32_t SignOf(int32_t value) { return (value > 0) - (value < 0); }
 
 }  // namespace
 
-void NeighborSums::Add(uint32_t edge, uint32_t magnitude) {
-  const uint32_t counted = std::min(magnitude, kMaxCountedMagnitude);
-  magnitude_[edge] = counted;
+void CodedNeighbors::Add(uint32_t edge, int32_t value) {
+  const int32_t counted = std::clamp(value, -kMaxCountedMagnitude, kMaxCountedMagnitude);
+  values_[edge] = counted;
   for (const uint32_t v : topology_.edges[edge]) {
-    vertex_sum_[v] += counted;
+    vertex_sum_[v] += Magnitude(counted);
     ++vertex_count_[v];
   }
 }
 
-CoefficientContext NeighborSums::Context(uint32_t edge, uint32_t forecast, bool has_forecast) const {
+CoefficientContext CodedNeighbors::ContextOf(uint32_t edge, const Forecast* forecast) const {
   // Edges around both ends weigh 1, and those in the faces of `edge`, which are among them, 2.
   const auto& [a, b] = topology_.edges[edge];
-  uint64_t sum = uint64_t{vertex_sum_[a]} + vertex_sum_[b];
-  uint64_t weight = uint64_t{vertex_count_[a]} + vertex_count_[b];
+  uint32_t sum = vertex_sum_[a] + vertex_sum_[b];
+  uint32_t weight = vertex_count_[a] + vertex_count_[b];
+  int32_t signed_sum = 0;
   for (const uint32_t face : topology_.edge_faces[edge]) {
     if (face == kNone) continue;
     for (const uint32_t side : topology_.face_edges[face]) {
       if (side >= edge) continue;
-      sum += magnitude_[side];
+      sum += Magnitude(values_[side]);
+      signed_sum += values_[side];
       ++weight;
     }
   }
-  uint64_t expected = forecast;
-  if (weight > 0) {
-    const uint64_t neighbors = (16 * sum + weight / 2) / weight;
-    expected = has_forecast ? (3 * neighbors + forecast + 2) / 4 : neighbors;
+  uint64_t sixteenths = uint64_t{16} * sum;
+  if (forecast != nullptr) {
+    sixteenths += uint64_t{kForecastWeight} * forecast->magnitude;
+    weight += kForecastWeight;
   }
   CoefficientContext context;
-  context.activity = ActivityClass(static_cast<uint32_t>(expected));
+  if (weight > 0) context.activity = ActivityClass(static_cast<uint32_t>((sixteenths + weight / 2) / weight));
+  const int32_t sign = 3 * std::clamp(signed_sum, -2, 2) + (forecast != nullptr ? forecast->sign : 0);
+  context.sign_class = static_cast<int>(Magnitude(sign));
+  context.expect_negative = sign < 0;
   return context;
 }
 
-uint32_t RescaleForecast(uint32_t forecast, float from, float to) {
-  const uint32_t from_bits = StepToBits(from), to_bits = StepToBits(to);
-  const uint64_t scaled = uint64_t{forecast} * (0x80 + (from_bits & 0x7f)) * 256 / (0x80 + (to_bits & 0x7f));
-  const int shift = 8 - (static_cast<int>(from_bits >> 7) - static_cast<int>(to_bits >> 7));
-  if (scaled == 0 || shift >= 64) return 0;
-  if (shift < -20) return kMaxForecast;
-  return static_cast<uint32_t>(std::min<uint64_t>(shift >= 0 ? scaled >> shift : scaled << -shift, kMaxForecast));
-}
-
-std::vector<uint32_t> ForecastFiner(const Topology& t, const std::vector<uint32_t>& magnitudes) {
-  std::vector<uint32_t> smoothed(t.num_edges());
+std::vector<Forecast> CodedNeighbors::ForecastFiner() const {
+  const Topology& t = topology_;
+  std::vector<Forecast> parents(t.num_edges());
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
-    uint32_t sum = 0, weight = 2;
+    // The mean of the edge (weight 4) and the other edges of its faces (weight 1), halved: details shrink with the
+    // level.
+    uint32_t sum = 4 * Magnitude(values_[e]), weight = 4;
     for (const uint32_t face : t.edge_faces[e]) {
       if (face == kNone) continue;
-      for (const uint32_t side : t.face_edges[face]) sum += magnitudes[side];  // `e` itself once per face
-      weight += 3;
+      for (const uint32_t side : t.face_edges[face]) sum += side == e ? 0 : Magnitude(values_[side]);
+      weight += 2;
     }
-    sum += 2 * magnitudes[e];
-    smoothed[e] = 16 * sum / weight;
+    parents[e] = {8 * sum / weight, SignOf(values_[e])};
   }
-  std::vector<uint32_t> finer(size_t{2} * t.num_edges() + size_t{3} * t.num_faces());
-  for (uint32_t e = 0; e < t.num_edges(); ++e) finer[2 * e] = finer[2 * e + 1] = smoothed[e];
+  const uint32_t num_halves = 2 * t.num_edges();
+  std::vector<Forecast> finer(size_t{num_halves} + size_t{3} * t.num_faces());
+  for (uint32_t e = 0; e < t.num_edges(); ++e) finer[2 * e] = finer[2 * e + 1] = parents[e];
   for (uint32_t f = 0; f < t.num_faces(); ++f) {
-    for (uint32_t k = 0; k < 3; ++k) finer[2 * t.num_edges() + 3 * f + k] = smoothed[t.face_edges[f][k]];
+    // An inner edge cuts off corner k and runs parallel to the edge opposite to it.
+    for (uint32_t k = 0; k < 3; ++k) finer[num_halves + 3 * f + k] = parents[t.face_edges[f][k]];
   }
   return finer;
+}
+
+Forecast Rescale(const Forecast& forecast, float from, float to) {
+  // A step is (128 + low 7 bits) * 2^(exponent field - 134).
+  const uint32_t from_bits = StepToBits(from), to_bits = StepToBits(to);
+  const uint64_t ratio = uint64_t{forecast.magnitude} * (128 + (from_bits & 127)) * 256 / (128 + (to_bits & 127));
+  const int up = std::clamp(static_cast<int>(from_bits >> 7) - static_cast<int>(to_bits >> 7), -40, 24);
+  const uint64_t scaled = up >= 0 ? (ratio << up) >> 8 : ratio >> (8 - up);
+  return {static_cast<uint32_t>(std::min<uint64_t>(scaled, kMaxForecast)), forecast.sign};
 }
 
 }  // namespace lacerta

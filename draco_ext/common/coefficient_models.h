@@ -1,69 +1,75 @@
-// The adaptive models of one coefficient set, and what is known about a coefficient before it is coded.
+// The adaptive models of one coefficient set and the decisions that make up a coefficient.
 // Specified in docs/format.md, "Contexts" and "Binarization".
 #ifndef LACERTA_COMMON_COEFFICIENT_MODELS_H_
 #define LACERTA_COMMON_COEFFICIENT_MODELS_H_
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "common/bit_model.h"
-#include "common/coefficient_sets.h"
-#include "common/subdivision.h"
 
 namespace lacerta {
 
 inline constexpr int kNumActivityClasses = 14;  // of the expected magnitude
 inline constexpr int kNumCompanionClasses = 3;
-inline constexpr int kUnaryLength = 14;    // magnitudes up to this one are coded in unary
-inline constexpr int kMaxExponent = 19;    // of the Exp-Golomb code of the rest
+inline constexpr int kNumSignClasses = 8;
+inline constexpr int kUnaryLength = 14;  // magnitudes up to this one are coded in unary
+inline constexpr int kMaxExponent = 19;  // the rest, m - 14, is below 2^20
 
 // Class of an expected magnitude given in 1/16: 0 for 0, then growing about logarithmically.
 inline int ActivityClass(uint32_t sixteenths) {
-  constexpr std::array<uint32_t, kNumActivityClasses - 1> kLowerBounds = {1, 3, 5, 8, 12, 17, 24, 36, 56, 90, 150, 260, 500};
+  constexpr std::array<uint32_t, kNumActivityClasses - 1> kLowerBounds = {1,  3,  5,  8,   12,  17, 24,
+                                                                          36, 56, 90, 150, 260, 500};
   int c = 0;
   while (c < kNumActivityClasses - 1 && sixteenths >= kLowerBounds[c]) ++c;
   return c;
 }
 
-// What the coded neighbors say about the next coefficient.
+// What is known about a coefficient before it is coded.
 struct CoefficientContext {
-  int activity = 0;  // ActivityClass
-  int companion = 0;  // what was coded at the same edge before: 0 nothing or zero .. 2 large
-  int sign = 0;      // 0: neighbors say nothing; 1: they are positive; 2: negative
+  int activity = 0;    // ActivityClass of the expected magnitude
+  int companion = 0;   // what was coded at the same edge before: 0 nothing or zeros .. 2 much
+  int sign_class = 0;  // 0: nothing is known about the sign .. 7: neighbors and parent agree on it
+  bool expect_negative = false;
 };
 
 // Models of one set. They live on from level to level.
 struct SetModels {
+  // nonzero_to_begin: the probability of a coefficient other than zero to begin with, in 1/65536.
+  explicit SetModels(uint32_t nonzero_to_begin) {
+    for (auto& models : nonzero) models.fill(BitModel(nonzero_to_begin));
+  }
+
   std::array<std::array<BitModel, kNumCompanionClasses>, kNumActivityClasses> nonzero;
-  std::array<BitModel, 3> negative;
-  std::array<std::array<BitModel, kUnaryLength>, kNumActivityClasses> larger;  // [m - 1]: magnitude > m
-  std::array<BitModel, kMaxExponent> exponent;
-  std::array<BitModel, kMaxExponent + 1> mantissa_top;
+  std::array<BitModel, kNumSignClasses> unexpected_sign;
+  std::array<std::array<BitModel, kUnaryLength>, kNumActivityClasses> larger;  // [m - 1]: the magnitude exceeds m
+  std::array<BitModel, kMaxExponent> longer;      // [k]: the rest has more than k bits below its leading one
+  std::array<BitModel, kMaxExponent> second_bit;  // [k - 1]: of a rest with k bits below its leading one
 };
 
 inline uint32_t Magnitude(int32_t q) { return static_cast<uint32_t>(q < 0 ? -int64_t{q} : int64_t{q}); }
 
-// Codes one coefficient; returns it. With an encoding coder `value` is what is coded; a decoding coder ignores it.
+// Codes one coefficient; returns it. With an encoding coder `value` is what is coded; a decoding coder ignores it, and
+// whatever it answers, the magnitude stays within kMaxMagnitude.
 template <typename Coder>
 int32_t CodeCoefficient(Coder& coder, SetModels& models, const CoefficientContext& context, int32_t value) {
   if (!coder.Code(models.nonzero[context.activity][context.companion], value != 0)) return 0;
-  const bool negative = coder.Code(models.negative[context.sign], value < 0);
+  const bool negative = context.expect_negative !=
+                        coder.Code(models.unexpected_sign[context.sign_class], (value < 0) != context.expect_negative);
   const uint32_t target = Magnitude(value);
   uint32_t magnitude = 1;
   auto& larger = models.larger[context.activity];
   while (magnitude <= kUnaryLength && coder.Code(larger[magnitude - 1], target > magnitude)) ++magnitude;
-  if (magnitude > kUnaryLength) {  // Exp-Golomb code of the rest, first the number of bits below the leading one
+  if (magnitude > kUnaryLength) {  // Exp-Golomb code of the rest: length, then the bits below the leading one
     const uint32_t rest = target - kUnaryLength;
-    int exponent = 0;
-    while (exponent < kMaxExponent && coder.Code(models.exponent[exponent], rest >> (exponent + 1) != 0)) ++exponent;
-    uint32_t decoded = 1;
-    for (int bit = exponent - 1; bit >= 0; --bit) {
+    int length = 0;
+    while (length < kMaxExponent && coder.Code(models.longer[length], rest >> length > 1)) ++length;
+    uint32_t coded = 1;
+    for (int bit = length - 1; bit >= 0; --bit) {
       const bool one = (rest >> bit & 1) != 0;
-      const bool top = bit == exponent - 1;
-      decoded = decoded << 1 | (top ? coder.Code(models.mantissa_top[exponent], one) : coder.CodeEven(one));
+      coded = coded << 1 | (bit == length - 1 ? coder.Code(models.second_bit[bit], one) : coder.CodeEven(one));
     }
-    magnitude = kUnaryLength + decoded;
+    magnitude = kUnaryLength + coded;
   }
   return negative ? -static_cast<int32_t>(magnitude) : static_cast<int32_t>(magnitude);
 }

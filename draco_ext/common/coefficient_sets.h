@@ -7,8 +7,8 @@
 
 namespace lacerta {
 
-// Largest magnitude that the binarization can express (common/coefficient_coding.h); larger ones cannot be encoded, and no
-// stream decodes to them.
+// Largest magnitude that the binarization can express (common/coefficient_coding.h); larger ones cannot be encoded, and
+// no stream decodes to them.
 inline constexpr int32_t kMaxMagnitude = (1 << 20) + 13;
 
 // Quantized details of level i + 1: one vector per edge of level i, in the local frame of the edge's midpoint.
@@ -31,8 +31,8 @@ struct LevelSteps {
   uint8_t tangential_bias = 0;  // 0..15
 };
 
-// The step nearest to `step` that a stream can hold: the upper 16 bits of its binary32 form, rounded to nearest. Infinite,
-// NaN, negative and very small (< 2^-126) steps become 0.
+// The step nearest to `step` that a stream can hold: the upper 16 bits of its binary32 form, rounded to nearest.
+// Infinite, NaN, negative and very small (< 2^-126) steps become 0.
 float RoundStep(float step);
 
 // The upper 16 bits of the binary32 form of a step that RoundStep returned, and back.
@@ -42,7 +42,8 @@ float StepFromBits(uint16_t bits);
 // The length that a quantized coefficient stands for: sign(q) (|q| - bias / 32) step, and 0 for q = 0.
 inline float Dequantize(int32_t q, float step, uint8_t bias) {
   if (q == 0) return 0.0f;
-  const float magnitude = (q < 0 ? -static_cast<float>(q) : static_cast<float>(q)) - static_cast<float>(bias) / kBiasUnit;
+  const float magnitude =
+      (q < 0 ? -static_cast<float>(q) : static_cast<float>(q)) - static_cast<float>(bias) / kBiasUnit;
   return q < 0 ? -magnitude * step : magnitude * step;
 }
 

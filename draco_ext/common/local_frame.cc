@@ -40,6 +40,8 @@ std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::ve
     const Vec3f along = Normalized(positions[coarse.edges[e][1]] - positions[coarse.edges[e][0]]);
     const Vec3f tangent = along - frame.normal * Dot(along, frame.normal);
     frame.tangent1 = SquaredNorm(tangent) > 1e-6f ? Normalized(tangent) : AnyOrthogonal(frame.normal);
+    // Once more: the first pass leaves 1e-4 along the normal where the edge was nearly parallel to it.
+    frame.tangent1 = Normalized(frame.tangent1 - frame.normal * Dot(frame.tangent1, frame.normal));
     frame.tangent2 = Cross(frame.normal, frame.tangent1);
   }
   return frames;

@@ -28,7 +28,8 @@ struct RefinementHeader {
   std::vector<LevelSteps> steps;  // of levels 1, 2, ...
 };
 
-// CRC-32 over the lattice values (three per vertex) and the triangles (three indices each) as 4-byte little-endian words.
+// CRC-32 over the lattice values (three per vertex) and the triangles (three indices each) as 4-byte little-endian
+// words.
 uint32_t BaseChecksum(const BaseMesh& base);
 
 // The checksum that the segment of `level` carries.

@@ -157,7 +157,8 @@ Topology Refine(const Topology& c) {
 }
 
 LevelCounts SubdividedCounts(LevelCounts counts, int levels) {
-  for (int level = 0; level < levels; ++level) {
+  constexpr uint64_t kMaxFaces = uint64_t{1} << 58;
+  for (int level = 0; level < levels && counts.faces > 0 && counts.faces < kMaxFaces; ++level) {
     counts = {counts.vertices + counts.edges, 2 * counts.edges + 3 * counts.faces, 4 * counts.faces};
   }
   return counts;

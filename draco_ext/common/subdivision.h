@@ -42,7 +42,8 @@ StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triang
 // Tables of the next finer level. Counts must fit: 4 #F < 2^32 (SubdividedCounts checks it for decoders).
 Topology Refine(const Topology& coarse);
 
-// Numbers of vertices, edges and faces after `levels` refinements, in 64 bits.
+// Numbers of vertices, edges and faces after `levels` >= 0 refinements, in 64 bits. Growth stops once there are 2^58 faces
+// or more, so that no number of levels in a damaged header overflows into a small count. base: each below 2^33.
 struct LevelCounts {
   uint64_t vertices = 0, edges = 0, faces = 0;
 };

@@ -21,7 +21,8 @@ Status CheckBase(const BaseMesh& base, const DecodeLimits& limits) {
     return LimitExceeded("the base mesh (" + std::to_string(base.lattice.size()) + " vertices, " +
                          std::to_string(base.triangles.size()) + " triangles) is over the decode limits");
   }
-  if (!(base.step > 0) || !std::isnormal(base.step)) return InvalidData("the step of the base mesh is not a positive number");
+  if (!(base.step > 0) || !std::isnormal(base.step))
+    return InvalidData("the step of the base mesh is not a positive number");
   for (size_t v = 0; v < base.lattice.size(); ++v) {
     for (const int32_t value : base.lattice[v]) {
       if (value >= -kMaxLatticeValue && value <= kMaxLatticeValue) continue;
@@ -31,7 +32,8 @@ Status CheckBase(const BaseMesh& base, const DecodeLimits& limits) {
   return Status();
 }
 
-Status CheckHeaderFitsBase(const RefinementHeader& header, const SemiRegularMesh& mesh, float base_step, uint32_t checksum) {
+Status CheckHeaderFitsBase(const RefinementHeader& header, const SemiRegularMesh& mesh, float base_step,
+                           uint32_t checksum) {
   if (header.num_base_vertices == mesh.num_base_vertices && header.num_base_triangles == mesh.base_triangles.size() &&
       header.base_step == base_step && header.base_checksum == checksum) {
     return Status();
@@ -43,7 +45,8 @@ Status CheckHeaderFitsBase(const RefinementHeader& header, const SemiRegularMesh
 
 Status CheckLevelFits(const Topology& t, int level, const DecodeLimits& limits) {
   const LevelCounts finer = SubdividedCounts({t.num_vertices, t.num_edges(), t.num_faces()}, 1);
-  if (finer.vertices <= limits.max_vertices && finer.faces <= limits.max_triangles && 2 * finer.edges < kNone) return Status();
+  if (finer.vertices <= limits.max_vertices && finer.faces <= limits.max_triangles && 2 * finer.edges < kNone)
+    return Status();
   return LimitExceeded("level " + std::to_string(level) + " (" + std::to_string(finer.vertices) + " vertices, " +
                        std::to_string(finer.faces) + " triangles) is over the decode limits");
 }
@@ -51,8 +54,8 @@ Status CheckLevelFits(const Topology& t, int level, const DecodeLimits& limits) 
 Status CheckValences(const Topology& t) {
   for (uint32_t v = 0; v < t.num_vertices; ++v) {
     if (t.valence[v] <= kMaxBaseValence) continue;
-    return InvalidData("base vertex " + std::to_string(v) + " has " + std::to_string(t.valence[v]) + " edges; a refined base has at most " +
-                       std::to_string(kMaxBaseValence));
+    return InvalidData("base vertex " + std::to_string(v) + " has " + std::to_string(t.valence[v]) +
+                       " edges; a refined base has at most " + std::to_string(kMaxBaseValence));
   }
   return Status();
 }
@@ -109,7 +112,8 @@ StatusOr<size_t> ProgressiveDecoder::State::TakeSegment(Span<const uint8_t> byte
 }
 
 Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const uint8_t> payload) {
-  QuantizedLevel quantized{std::vector<int32_t>(topology.num_edges()), std::vector<int32_t>(size_t{2} * topology.num_edges())};
+  QuantizedLevel quantized{std::vector<int32_t>(topology.num_edges()),
+                           std::vector<int32_t>(size_t{2} * topology.num_edges())};
   RangeDecoder decoder(payload);
   CodeLevel(topology, steps, &coding, &quantized, &decoder);
   SynthesizeLevel(topology, *stencils, steps, quantized, &mesh.positions);
@@ -160,7 +164,9 @@ ProgressiveDecoder& ProgressiveDecoder::operator=(ProgressiveDecoder&&) noexcept
 ProgressiveDecoder::~ProgressiveDecoder() = default;
 
 int ProgressiveDecoder::level() const { return state_->mesh.num_levels; }
-int ProgressiveDecoder::num_levels() const { return state_->header ? static_cast<int>(state_->header->steps.size()) : 0; }
+int ProgressiveDecoder::num_levels() const {
+  return state_->header ? static_cast<int>(state_->header->steps.size()) : 0;
+}
 size_t ProgressiveDecoder::bytes_used() const { return state_->bytes_used; }
 const Status& ProgressiveDecoder::refinement() const { return state_->refinement; }
 const SemiRegularMesh& ProgressiveDecoder::mesh() const { return state_->mesh; }
@@ -187,7 +193,8 @@ StatusOr<RefinementResult> DecodeRefinement(const BaseMesh& base, Span<const uin
 
 StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level) {
   if (level < 0 || level > mesh.num_levels) {
-    return InvalidArgument("the mesh has levels 0 to " + std::to_string(mesh.num_levels) + ", not " + std::to_string(level));
+    return InvalidArgument("the mesh has levels 0 to " + std::to_string(mesh.num_levels) + ", not " +
+                           std::to_string(level));
   }
   if (level == 0) {
     const auto end = mesh.positions.begin() + mesh.num_base_vertices;

@@ -10,8 +10,8 @@
 
 namespace lacerta {
 
-// Decodes the decisions of one payload. Bytes past the end read as zero (the encoder leaves trailing zeros out), so every
-// payload decodes to some sequence of decisions, whatever its bytes.
+// Decodes the decisions of one payload. Bytes past the end read as zero (the encoder leaves trailing zeros out), so
+// every payload decodes to some sequence of decisions, whatever its bytes.
 class RangeDecoder {
  public:
   explicit RangeDecoder(Span<const uint8_t> payload) : payload_(payload) {

@@ -52,20 +52,20 @@ class Cursor {
   bool at_end_ = false, malformed_ = false;
 };
 
-struct StepField {
-  float step = 0.0f;
-  uint8_t bias = 0;
-  bool valid = false;
-};
-
-StepField ReadStep(Cursor& cursor) {
-  StepField field;
-  const uint16_t bits = cursor.Word16();
-  field.step = StepFromBits(bits);
-  if (bits != 0) field.bias = cursor.Byte();
-  field.valid = bits == 0 || (field.step > 0 && std::isnormal(field.step) && field.bias <= kMaxBias);
-  return field;
+LevelSteps ReadSteps(Cursor& cursor) {
+  LevelSteps steps;
+  const uint16_t normal = cursor.Word16(), tangential = cursor.Word16();
+  steps.normal_step = StepFromBits(normal);
+  steps.tangential_step = StepFromBits(tangential);
+  if (normal != 0 || tangential != 0) {
+    const uint8_t biases = cursor.Byte();
+    steps.normal_bias = biases & 15;
+    steps.tangential_bias = biases >> 4;
+  }
+  return steps;
 }
+
+bool IsStepOfStream(float step) { return step == 0.0f ? !std::signbit(step) : step > 0 && std::isnormal(step); }
 
 }  // namespace
 
@@ -75,7 +75,8 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   for (const uint8_t expected : kRefinementMagic) {
     const uint8_t byte = cursor.Byte();
     if (cursor.at_end()) return Result();
-    if (byte != expected) return InvalidData("the bytes after the base mesh are not a Lacerta refinement (no \"LAC\" mark)");
+    if (byte != expected)
+      return InvalidData("the bytes after the base mesh are not a Lacerta refinement (no \"LAC\" mark)");
   }
   const int version = cursor.Byte();
   if (cursor.at_end()) return Result();
@@ -88,7 +89,8 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   const int num_levels = levels_and_layers & 0x0f, num_layers = levels_and_layers >> 4;
   if (num_layers != 1) return Unsupported(std::to_string(num_layers) + " quality layers per level; version 1 has one");
   if (num_levels < 1 || num_levels > kMaxLevels) {
-    return InvalidData(std::to_string(num_levels) + " refinement levels; 1 to " + std::to_string(kMaxLevels) + " are legal");
+    return InvalidData(std::to_string(num_levels) + " refinement levels; 1 to " + std::to_string(kMaxLevels) +
+                       " are legal");
   }
   RefinementHeader header;
   header.num_base_vertices = cursor.Varint();
@@ -96,13 +98,7 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   const uint32_t step_bits = cursor.Word32();
   std::memcpy(&header.base_step, &step_bits, sizeof(step_bits));
   header.base_checksum = cursor.Word32();
-  bool steps_valid = true;
-  for (int level = 1; level <= num_levels; ++level) {
-    const StepField normal = ReadStep(cursor);
-    const StepField tangential = ReadStep(cursor);
-    steps_valid = steps_valid && normal.valid && tangential.valid;
-    header.steps.push_back({normal.step, tangential.step, normal.bias, tangential.bias});
-  }
+  for (int level = 1; level <= num_levels; ++level) header.steps.push_back(ReadSteps(cursor));
   const size_t checked_size = cursor.position();
   const uint16_t checksum = cursor.Word16();
   if (cursor.at_end()) return Result();
@@ -113,7 +109,10 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   if (!(header.base_step > 0) || !std::isnormal(header.base_step)) {
     return InvalidData("the base step in the refinement header is not a positive number");
   }
-  if (!steps_valid) return InvalidData("a quantization step or bias in the refinement header is out of range");
+  for (const LevelSteps& s : header.steps) {
+    if (IsStepOfStream(s.normal_step) && IsStepOfStream(s.tangential_step)) continue;
+    return InvalidData("a quantization step in the refinement header is not a positive number");
+  }
   return Result(ReadHeader{std::move(header), cursor.position()});
 }
 
@@ -122,7 +121,8 @@ StatusOr<std::optional<ReadSegment>> ReadRefinementSegment(Span<const uint8_t> b
   Cursor cursor(bytes);
   const uint32_t length = cursor.Varint();
   const uint16_t checksum = cursor.Word16();
-  if (cursor.malformed()) return InvalidData("the length of the segment of level " + std::to_string(level) + " exceeds 32 bits");
+  if (cursor.malformed())
+    return InvalidData("the length of the segment of level " + std::to_string(level) + " exceeds 32 bits");
   if (cursor.at_end() || bytes.size() - cursor.position() < length) return Result();
   const Span<const uint8_t> payload = bytes.Subspan(cursor.position()).First(length);
   if (SegmentChecksum(level, payload) != checksum) {

@@ -17,8 +17,9 @@ struct ReadHeader {
   size_t size = 0;  // bytes that it took
 };
 
-// The header at the beginning of `bytes`, or nothing where `bytes` ends inside it. Fails with kInvalidData where a field or
-// the checksum is wrong and with kUnsupported on a version or number of layers that this decoder does not know.
+// The header at the beginning of `bytes`, or nothing where `bytes` ends inside it. Fails with kInvalidData where a
+// field or the checksum is wrong and with kUnsupported on a version or number of layers that this decoder does not
+// know.
 StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> bytes);
 
 struct ReadSegment {
@@ -26,8 +27,8 @@ struct ReadSegment {
   size_t size = 0;  // bytes that it took
 };
 
-// The segment of `level` at the beginning of `bytes`, or nothing where `bytes` ends inside it. Fails with kInvalidData where
-// the length is malformed or the checksum is wrong.
+// The segment of `level` at the beginning of `bytes`, or nothing where `bytes` ends inside it. Fails with kInvalidData
+// where the length is malformed or the checksum is wrong.
 StatusOr<std::optional<ReadSegment>> ReadRefinementSegment(Span<const uint8_t> bytes, int level);
 
 }  // namespace lacerta

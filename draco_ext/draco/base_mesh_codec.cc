@@ -1,5 +1,8 @@
 #include "draco/base_mesh_codec.h"
 
+#include <draco/attributes/geometry_attribute.h>
+#include <draco/attributes/point_attribute.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,12 +11,10 @@
 #include <string>
 #include <utility>
 
-#include <draco/attributes/geometry_attribute.h>
-#include <draco/attributes/point_attribute.h>
-
 #include "common/stream_layout.h"
 #include "common/subdivision.h"
 #include "draco/mesh_conversion.h"
+#include "draco/smallest_stream.h"
 #include "draco/stock_stream.h"
 
 namespace lacerta {
@@ -54,65 +55,11 @@ StatusOr<IntegerMesh> ToIntegerMesh(const BaseMesh& base) {
   while (extent >> result.bits != 0) ++result.bits;
   if (result.bits > 24) return InvalidData("base lattice spans more than 24 bits; choose a larger step");
   for (const std::array<int32_t, 3>& p : base.lattice) {
-    result.mesh.positions.push_back({static_cast<float>(p[0] - low[0]), static_cast<float>(p[1] - low[1]),
-                                     static_cast<float>(p[2] - low[2])});
+    result.mesh.positions.push_back(
+        {static_cast<float>(p[0] - low[0]), static_cast<float>(p[1] - low[1]), static_cast<float>(p[2] - low[2])});
   }
   result.mesh.triangles = base.triangles;
   return result;
-}
-
-// Puts corner `corner` of triangle `first` at the front of the triangle list: edgebreaker starts there.
-TriangleMesh StartingAt(const TriangleMesh& mesh, uint32_t first, uint32_t corner) {
-  TriangleMesh result = mesh;
-  std::rotate(result.triangles.begin(), result.triangles.begin() + first, result.triangles.end());
-  Triangle& front = result.triangles.front();
-  std::rotate(front.begin(), front.begin() + corner, front.end());
-  return result;
-}
-
-// A way to code a base, and what came out of it.
-struct Attempt {
-  StockSettings settings;
-  uint32_t first = 0;
-  uint32_t corner = 0;
-  Bytes stream;
-};
-
-Status Try(const IntegerMesh& base, Attempt attempt, Attempt* best) {
-  const auto mesh = ToDracoMesh(StartingAt(base.mesh, attempt.first, attempt.corner));
-  LACERTA_ASSIGN_OR_RETURN(attempt.stream, EncodeIntegerPositions(*mesh, base.bits, attempt.settings));
-  if (best->stream.empty() || attempt.stream.size() < best->stream.size()) *best = std::move(attempt);
-  return {};
-}
-
-// Every setting from the first triangle, then other starting triangles with the best setting: these gain about 0.5 %. A
-// larger base gets fewer of them, since there the start matters less and time more.
-StatusOr<Attempt> FindSmallest(const IntegerMesh& base) {
-  using Connectivity = StockSettings::Connectivity;
-  using Prediction = StockSettings::Prediction;
-  Attempt best;
-  for (const Connectivity connectivity : {Connectivity::kEdgebreaker, Connectivity::kEdgebreakerValence}) {
-    for (const Prediction prediction : {Prediction::kParallelogram, Prediction::kConstrainedMultiParallelogram}) {
-      for (const int speed : {0, 1, 5}) {
-        Attempt attempt;
-        attempt.settings = {connectivity, prediction, speed};
-        LACERTA_RETURN_IF_ERROR(Try(base, std::move(attempt), &best));
-      }
-    }
-  }
-  constexpr size_t kMaxStarts = 32;
-  constexpr size_t kTriangleBudget = 1u << 15;
-  const size_t num_triangles = base.mesh.triangles.size();
-  const size_t num_starts = std::min(kMaxStarts, kTriangleBudget / num_triangles);
-  const StockSettings settings = best.settings;
-  for (size_t i = 1; i < num_starts; ++i) {
-    Attempt attempt;
-    attempt.settings = settings;
-    attempt.first = static_cast<uint32_t>(i * num_triangles / num_starts);
-    attempt.corner = static_cast<uint32_t>(i % 3);
-    LACERTA_RETURN_IF_ERROR(Try(base, std::move(attempt), &best));
-  }
-  return best;
 }
 
 // The decoder's step is range / (2^bits - 1), rounded to float: the range that makes it `step` exactly.
@@ -126,19 +73,19 @@ float RangeForStep(float step, int bits) {
   return range;
 }
 
-// The input vertex behind each vertex of `coded`, the decoded triangles of the stream. Draco does not tell, so the same mesh
-// is coded once more with the vertex number as a second attribute: that may change the order of the vertices but not the
-// one of triangles and corners. (IsRenumbering makes sure of it.)
-StatusOr<std::vector<uint32_t>> FindVertexMap(const IntegerMesh& base, const Attempt& attempt,
+// The input vertex behind each vertex of `coded`, the decoded triangles of the stream. Draco does not tell, so the same
+// mesh is coded once more with the vertex number as a second attribute: that may change the order of the vertices but
+// not the one of triangles and corners. (IsRenumbering makes sure of it.)
+StatusOr<std::vector<uint32_t>> FindVertexMap(const IntegerMesh& base, const StockAttempt& attempt,
                                               const std::vector<Triangle>& coded) {
-  const auto mesh = ToDracoMesh(StartingAt(base.mesh, attempt.first, attempt.corner));
+  const auto mesh = ToDracoMesh(StartingAsIn(attempt, base.mesh));
   const auto num_vertices = static_cast<uint32_t>(base.mesh.positions.size());
   draco::GeometryAttribute description;
   description.Init(draco::GeometryAttribute::GENERIC, nullptr, 1, draco::DT_UINT32, false, sizeof(uint32_t), 0);
   const int id = mesh->AddAttribute(description, /*identity_mapping=*/true, num_vertices);
   for (uint32_t v = 0; v < num_vertices; ++v) mesh->attribute(id)->SetAttributeValue(draco::AttributeValueIndex(v), &v);
   LACERTA_ASSIGN_OR_RETURN(const Bytes stream, EncodeIntegerPositions(*mesh, base.bits, attempt.settings));
-  LACERTA_ASSIGN_OR_RETURN(const StockMesh numbered, DecodeStockStream(stream, DecodeLimits()));
+  LACERTA_ASSIGN_OR_RETURN(const StockMesh numbered, DecodeStockStream(stream, kNoDecodeLimits));
   const draco::PointAttribute* const numbers = numbered.mesh->GetNamedAttribute(draco::GeometryAttribute::GENERIC);
   if (numbers == nullptr || numbered.mesh->num_faces() != coded.size()) {
     return InternalError("Draco lost the vertex numbers of the base mesh");
@@ -185,7 +132,7 @@ float ShortStep(float step) {
 
 StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
   LACERTA_ASSIGN_OR_RETURN(const IntegerMesh integers, ToIntegerMesh(base));
-  LACERTA_ASSIGN_OR_RETURN(Attempt attempt, FindSmallest(integers));
+  LACERTA_ASSIGN_OR_RETURN(StockAttempt attempt, SmallestEdgebreakerStream(integers.mesh, integers.bits));
   QuantizationGrid grid;
   for (int c = 0; c < 3; ++c) grid.origin[c] = base.step * static_cast<float>(integers.origin[static_cast<size_t>(c)]);
   grid.range = RangeForStep(base.step, integers.bits);
@@ -194,7 +141,7 @@ StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
   result.stream = std::move(attempt.stream);
   LACERTA_RETURN_IF_ERROR(SetQuantizationGrid(grid, &result.stream));
 
-  LACERTA_ASSIGN_OR_RETURN(const DecodedBase decoded, DecodeBaseMesh(result.stream, DecodeLimits()));
+  LACERTA_ASSIGN_OR_RETURN(const DecodedBase decoded, DecodeBaseMesh(result.stream, kNoDecodeLimits));
   if (decoded.mesh.positions.size() != base.lattice.size() || decoded.mesh.triangles.size() != base.triangles.size()) {
     return InvalidData("Draco made " + std::to_string(decoded.mesh.positions.size()) + " vertices and " +
                        std::to_string(decoded.mesh.triangles.size()) + " triangles of the base mesh's " +
@@ -203,7 +150,9 @@ StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
   }
   StatusOr<BaseMesh> lattice = BaseMeshFromPositions(decoded.mesh, base.step);
   if (!lattice.ok()) {
-    return InvalidData("base lattice is too far from the origin for floats of its step; choose the step with ShortStep or a larger one");
+    return InvalidData(
+        "base lattice is too far from the origin for floats of its step; choose the step with ShortStep or a larger "
+        "one");
   }
   result.mesh = std::move(lattice).value();
   LACERTA_ASSIGN_OR_RETURN(result.vertex_map, FindVertexMap(integers, attempt, result.mesh.triangles));

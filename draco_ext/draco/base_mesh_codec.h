@@ -12,21 +12,20 @@
 
 namespace lacerta {
 
-// A coded base and what every decoder gets from it. Draco renumbers vertices and triangles and rotates triangles, so all
-// that follows must be computed on `mesh`.
+// A coded base and what every decoder gets from it. Draco renumbers vertices and triangles and rotates triangles, so
+// all that follows must be computed on `mesh`.
 struct CodedBase {
   Bytes stream;                      // edgebreaker, bitstream version 2.2
   BaseMesh mesh;                     // in the decoder's order; step as in the input
   std::vector<uint32_t> vertex_map;  // #V0, coded vertex -> input vertex
 };
 
-// Codes a base mesh without loss in the fewest bytes found among Draco's settings and starting triangles; deterministic.
-// The decoder's floats round to the lattice exactly; they equal BaseMesh::ToMesh() bit for bit where step * lattice is
-// exact in float, as with a step from ShortStep and |lattice| < 2^16.
-// BaseMeshFromPositions(decoded mesh, step) gives `mesh` again.
-// Fails with kInvalidData on an empty base, a step that is not a positive normal float, lattice values of 2^24 or more or
-// spanning more than 24 bits, a base that is not an oriented manifold (BuildTopology), and where Draco does not carry it
-// unchanged.
+// Codes a base mesh without loss in the fewest bytes found among Draco's settings and starting triangles;
+// deterministic. The decoder's floats round to the lattice exactly; they equal BaseMesh::ToMesh() bit for bit where
+// step * lattice is exact in float, as with a step from ShortStep and |lattice| < 2^16. BaseMeshFromPositions(decoded
+// mesh, step) gives `mesh` again. Fails with kInvalidData on an empty base, a step that is not a positive normal float,
+// lattice values of 2^24 or more or spanning more than 24 bits, a base that is not an oriented manifold
+// (BuildTopology), and where Draco does not carry it unchanged.
 StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base);
 
 // The largest float with an 8 bit significand that is not greater than `step`, a positive normal float.

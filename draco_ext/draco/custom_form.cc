@@ -1,16 +1,17 @@
 #include "draco/custom_form.h"
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <string>
-
 #include <draco/compression/config/compression_shared.h>
 #include <draco/compression/point_cloud/point_cloud_decoder.h>
 #include <draco/core/decoder_buffer.h>
 #include <draco/core/encoder_buffer.h>
 #include <draco/core/varint_decoding.h>
 #include <draco/core/varint_encoding.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <string>
 
 #include "draco/mesh_conversion.h"
 #include "draco/stock_stream.h"
@@ -37,7 +38,7 @@ Span<const uint8_t> Rest(Span<const uint8_t> bytes, const draco::DecoderBuffer& 
 Bytes CustomFormPayload(const StreamParts& parts) {
   draco::EncoderBuffer buffer;
   buffer.Encode(kCustomFormVersion);
-  draco::EncodeVarint(uint64_t{parts.base.size()}, &buffer);
+  draco::EncodeVarint(static_cast<uint32_t>(parts.base.size()), &buffer);
   buffer.Encode(parts.base.data(), parts.base.size());
   buffer.Encode(parts.refinement.data(), parts.refinement.size());
   return Bytes(buffer.data(), buffer.data() + buffer.size());
@@ -64,7 +65,9 @@ StatusOr<StreamParts> SplitCustomFormPayload(Span<const uint8_t> payload) {
                        std::to_string(kCustomFormVersion));
   }
   uint64_t base_size = 0;
-  if (!draco::DecodeVarint(&base_size, &buffer)) return InvalidData("custom form ends before the length of its base");
+  if (!draco::DecodeVarint(&base_size, &buffer) || base_size > std::numeric_limits<uint32_t>::max()) {
+    return InvalidData("length of the base in the custom form is cut off or does not fit 32 bits");
+  }
   const Span<const uint8_t> rest = Rest(payload, buffer);
   if (base_size > rest.size()) {
     return InvalidData("base stream of the custom form is cut off: " + std::to_string(rest.size()) + " of " +

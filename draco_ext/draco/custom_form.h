@@ -15,7 +15,7 @@ inline constexpr uint8_t kCustomFormVersion = 1;
 
 // Views into a stream.
 struct StreamParts {
-  Span<const uint8_t> base;        // a stock Draco mesh stream
+  Span<const uint8_t> base;        // a stock Draco mesh stream, < 2^32 bytes
   Span<const uint8_t> refinement;  // as lacerta/decoder.h reads it, or empty
 };
 

@@ -1,6 +1,6 @@
-#include <utility>
-
 #include <draco/compression/config/decoder_options.h>
+
+#include <utility>
 
 #include "draco/custom_form.h"
 #include "draco/decode_mesh.h"
@@ -35,8 +35,7 @@ draco::StatusOr<std::unique_ptr<draco::Mesh>> Decoder::DecodeMeshFromBuffer(drac
   if (!stock.ok()) return ToDracoStatus(stock.status());
   StatusOr<TriangleMesh> base = FromDracoMesh(*stock.value().mesh);
   if (!base.ok()) return ToDracoStatus(base.status());
-  const DecodedMesh decoded =
-      RefineBase(std::move(base).value(), stream.Subspan(stock.value().bytes_used), options_);
+  const DecodedMesh decoded = RefineBase(std::move(base).value(), stream.Subspan(stock.value().bytes_used), options_);
   in_buffer->Advance(in_buffer->remaining_size());
   level_ = decoded.level;
   num_levels_ = decoded.num_levels;

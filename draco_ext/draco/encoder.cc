@@ -1,6 +1,6 @@
-#include <utility>
-
 #include <draco/compression/config/encoder_options.h>
+
+#include <utility>
 
 #include "draco/custom_form.h"
 #include "draco/mesh_conversion.h"

@@ -1,5 +1,8 @@
 #include "draco/mesh_conversion.h"
 
+#include <draco/attributes/geometry_attribute.h>
+#include <draco/attributes/point_attribute.h>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -7,15 +10,47 @@
 #include <string>
 #include <utility>
 
-#include <draco/attributes/geometry_attribute.h>
-#include <draco/attributes/point_attribute.h>
-
 namespace lacerta {
 namespace {
 
 constexpr size_t kMaxCount = std::numeric_limits<int32_t>::max() / 3;  // Draco numbers corners with 32 bits
 
 bool IsFinite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+// Reads value `index` of three components of type T. Draco's ConvertValue is not used: it reads the attribute's
+// `normalized` flag, a bool that a damaged stream sets to 255.
+template <typename T>
+Vec3f ReadAs(const draco::PointAttribute& attribute, draco::AttributeValueIndex index) {
+  std::array<T, 3> value{};
+  attribute.GetValue(index, value.data());
+  return {static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
+}
+
+using Reader = Vec3f (*)(const draco::PointAttribute&, draco::AttributeValueIndex);
+
+// How positions of a type are read, or nullptr.
+Reader PositionReader(draco::DataType type) {
+  switch (type) {
+    case draco::DT_FLOAT32:
+      return &ReadAs<float>;
+    case draco::DT_FLOAT64:
+      return &ReadAs<double>;
+    case draco::DT_INT8:
+      return &ReadAs<int8_t>;
+    case draco::DT_UINT8:
+      return &ReadAs<uint8_t>;
+    case draco::DT_INT16:
+      return &ReadAs<int16_t>;
+    case draco::DT_UINT16:
+      return &ReadAs<uint16_t>;
+    case draco::DT_INT32:
+      return &ReadAs<int32_t>;
+    case draco::DT_UINT32:
+      return &ReadAs<uint32_t>;
+    default:
+      return nullptr;
+  }
+}
 
 }  // namespace
 
@@ -71,16 +106,22 @@ StatusOr<TriangleMesh> FromDracoMesh(const draco::Mesh& mesh) {
   if (positions == nullptr || positions->num_components() != 3) {
     return InvalidData("Draco mesh has no POSITION attribute of three components");
   }
+  const Reader read = PositionReader(positions->data_type());
+  if (read == nullptr || positions->byte_stride() < 3 * draco::DataTypeLength(positions->data_type())) {
+    return InvalidData("POSITION attribute of the Draco mesh has the unknown type " +
+                       std::to_string(static_cast<int>(positions->data_type())));
+  }
   TriangleMesh result;
   result.positions.resize(mesh.num_points());
   for (uint32_t v = 0; v < mesh.num_points(); ++v) {
     const draco::AttributeValueIndex value = positions->mapped_index(draco::PointIndex(v));
-    std::array<float, 3> p{};
-    if (value.value() >= positions->size() || !positions->ConvertValue<float, 3>(value, p.data())) {
+    if (value.value() >= positions->size()) {
       return InvalidData("position of vertex " + std::to_string(v) + " is missing in the Draco mesh");
     }
-    result.positions[v] = {p[0], p[1], p[2]};
-    if (!IsFinite(result.positions[v])) return InvalidData("position of vertex " + std::to_string(v) + " is not finite");
+    result.positions[v] = read(*positions, value);
+    if (!IsFinite(result.positions[v])) {
+      return InvalidData("position of vertex " + std::to_string(v) + " is not finite");
+    }
   }
   result.triangles.resize(mesh.num_faces());
   for (uint32_t f = 0; f < mesh.num_faces(); ++f) {

@@ -2,10 +2,10 @@
 #ifndef LACERTA_DRACO_MESH_CONVERSION_H_
 #define LACERTA_DRACO_MESH_CONVERSION_H_
 
-#include <memory>
-
 #include <draco/core/status.h>
 #include <draco/mesh/mesh.h>
+
+#include <memory>
 
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
@@ -22,8 +22,9 @@ std::unique_ptr<draco::Mesh> ToDracoMesh(const TriangleMesh& mesh);
 // The same into an empty mesh.
 void FillDracoMesh(const TriangleMesh& mesh, draco::Mesh* result);
 
-// Vertex i of the result is point i. Integer positions are converted to float. Fails with kInvalidData where there is no
-// POSITION attribute of three components, an index is out of range or a position is not finite.
+// Vertex i of the result is point i. Positions of any number type become floats, without scaling. Fails with
+// kInvalidData where there is no POSITION attribute of three components, an index is out of range or a position is not
+// finite.
 StatusOr<TriangleMesh> FromDracoMesh(const draco::Mesh& mesh);
 
 // The same status in the other library's type. Codes without a counterpart become DRACO_ERROR and kInvalidData.

@@ -2,9 +2,9 @@
 #ifndef LACERTA_DRACO_MESH_DECODER_H_
 #define LACERTA_DRACO_MESH_DECODER_H_
 
-#include <cstdint>
-
 #include <draco/compression/mesh/mesh_decoder.h>
+
+#include <cstdint>
 
 #include "lacerta/codec.h"
 #include "lacerta/status.h"
@@ -18,8 +18,8 @@ class ProgressiveMeshDecoder : public draco::MeshDecoder {
   explicit ProgressiveMeshDecoder(const DecodeOptions& options) : options_(options) {}
 
   const Status& status() const { return status_; }
-  int level() const { return level_; }                     // decoded
-  int num_levels() const { return num_levels_; }           // that the stream announces
+  int level() const { return level_; }                      // decoded
+  int num_levels() const { return num_levels_; }            // that the stream announces
   const Status& refinement() const { return refinement_; }  // as DecodedMesh::refinement
 
  protected:

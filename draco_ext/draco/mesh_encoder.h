@@ -2,9 +2,9 @@
 #ifndef LACERTA_DRACO_MESH_ENCODER_H_
 #define LACERTA_DRACO_MESH_ENCODER_H_
 
-#include <cstdint>
-
 #include <draco/compression/mesh/mesh_encoder.h>
+
+#include <cstdint>
 
 #include "draco/custom_form.h"
 

@@ -1,11 +1,5 @@
 #include "draco/stock_stream.h"
 
-#include <algorithm>
-#include <array>
-#include <cstring>
-#include <string>
-#include <utility>
-
 #include <draco/compression/config/compression_shared.h>
 #include <draco/compression/decode.h>
 #include <draco/compression/expert_encode.h>
@@ -16,12 +10,19 @@
 #include <draco/metadata/geometry_metadata.h>
 #include <draco/metadata/metadata_decoder.h>
 
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+#include <utility>
+
 #include "draco/mesh_conversion.h"
 
 namespace lacerta {
 namespace {
 
-constexpr size_t kGridSize = 4 * sizeof(float) + 1;  // origin, range, bits: the last bytes of a stream of positions alone
+constexpr size_t kGridSize =
+    4 * sizeof(float) + 1;  // origin, range, bits: the last bytes of a stream of positions alone
 
 int PredictionMethod(StockSettings::Prediction prediction) {
   switch (prediction) {
@@ -66,9 +67,9 @@ Status CheckCounts(const Counts& counts, size_t stream_size, const DecodeLimits&
                          std::to_string(counts.triangles) + " triangles; the decode limits are " +
                          std::to_string(limits.max_vertices) + " and " + std::to_string(limits.max_triangles));
   }
-  // A coded symbol costs at least log2(4096 / 4095) = 0.00035 bits in Draco's entropy coder, which makes 22,700 symbols a
-  // byte; every triangle of edgebreaker is a symbol, and every vertex three numbers. Sequential streams are bounded by
-  // their vertices in the same way.
+  // A coded symbol costs at least log2(4096 / 4095) = 0.00035 bits in Draco's entropy coder, which makes 22,700 symbols
+  // a byte; every triangle of edgebreaker is a symbol, and every vertex three numbers. Sequential streams are bounded
+  // by their vertices in the same way.
   constexpr uint64_t kMaxSymbolsPerByte = 22700;
   constexpr uint64_t kSlack = 1u << 16;
   if (std::max(counts.vertices, counts.triangles) > kSlack + kMaxSymbolsPerByte * stream_size) {

@@ -2,13 +2,13 @@
 #ifndef LACERTA_DRACO_STOCK_STREAM_H_
 #define LACERTA_DRACO_STOCK_STREAM_H_
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-
 #include <draco/compression/config/compression_shared.h>
 #include <draco/core/decoder_buffer.h>
 #include <draco/mesh/mesh.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 
 #include "lacerta/decoder.h"
 #include "lacerta/mesh.h"
@@ -31,8 +31,8 @@ struct StockSettings {
   int speed = 0;
 };
 
-// Codes a mesh whose positions are the integers 0 .. 2^bits - 1, held as floats; 1 <= bits <= 24. A decoder gets the very
-// integers back, in Draco's order of vertices and faces. The mesh must pass CheckEncodable.
+// Codes a mesh whose positions are the integers 0 .. 2^bits - 1, held as floats; 1 <= bits <= 24. A decoder gets the
+// very integers back, in Draco's order of vertices and faces. The mesh must pass CheckEncodable.
 StatusOr<Bytes> EncodeIntegerPositions(const draco::Mesh& mesh, int bits, const StockSettings& settings);
 
 // Where a decoder puts the integers: p = origin + integer * (range / (2^bits - 1)), in float arithmetic.
@@ -41,13 +41,16 @@ struct QuantizationGrid {
   float range = 1.0f;  // model units, > 0
 };
 
-// Writes the grid over the one of `stream`, a result of EncodeIntegerPositions on a mesh with no other attribute. Draco's
-// options cannot carry it: they store floats as decimal text with six digits after the point.
+// Writes the grid over the one of `stream`, a result of EncodeIntegerPositions on a mesh with no other attribute.
+// Draco's options cannot carry it: they store floats as decimal text with six digits after the point.
 Status SetQuantizationGrid(const QuantizationGrid& grid, Bytes* stream);
 
-// Reads the header of a mesh stream of any method, and skips the metadata that may follow it. Fails with kInvalidData, or
-// with kUnsupported on a point cloud and on a bitstream version other than 2.2, which Draco writes since 2017.
+// Reads the header of a mesh stream of any method, and skips the metadata that may follow it. Fails with kInvalidData,
+// or with kUnsupported on a point cloud and on a bitstream version other than 2.2, which Draco writes since 2017.
 StatusOr<draco::DracoHeader> ReadMeshHeader(draco::DecoderBuffer* buffer);
+
+// For streams that this library wrote itself.
+inline constexpr DecodeLimits kNoDecodeLimits = {~uint64_t{0}, ~uint64_t{0}};
 
 struct StockMesh {
   std::unique_ptr<draco::Mesh> mesh;

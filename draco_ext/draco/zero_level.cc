@@ -10,12 +10,11 @@
 
 #include "draco/base_mesh_codec.h"
 #include "draco/mesh_conversion.h"
+#include "draco/smallest_stream.h"
 #include "draco/stock_stream.h"
 
 namespace lacerta {
 namespace {
-
-constexpr size_t kManyTriangles = 200000;  // fewer settings are tried from there on
 
 struct GridMesh {
   TriangleMesh mesh;  // integers as floats
@@ -63,56 +62,43 @@ std::vector<Corners> SortedTriangles(const TriangleMesh& mesh) {
       corners[k] = {p.x, p.y, p.z};
     }
     const Corners start = corners;
-    for (size_t k = 1; k < 3; ++k) corners = std::min(corners, Corners{start[k], start[(k + 1) % 3], start[(k + 2) % 3]});
+    for (size_t k = 1; k < 3; ++k) {
+      corners = std::min(corners, Corners{start[k], start[(k + 1) % 3], start[(k + 2) % 3]});
+    }
     result.push_back(corners);
   }
   std::sort(result.begin(), result.end());
   return result;
 }
 
-// The smallest edgebreaker stream, or none where Draco refuses the mesh.
-Bytes SmallestEdgebreaker(const draco::Mesh& mesh, int bits) {
-  using Connectivity = StockSettings::Connectivity;
-  using Prediction = StockSettings::Prediction;
-  std::vector<StockSettings> candidates = {{Connectivity::kEdgebreakerValence, Prediction::kParallelogram, 0},
-                                           {Connectivity::kEdgebreakerValence, Prediction::kConstrainedMultiParallelogram, 0}};
-  if (mesh.num_faces() < kManyTriangles) {
-    candidates.push_back({Connectivity::kEdgebreaker, Prediction::kParallelogram, 0});
-    candidates.push_back({Connectivity::kEdgebreaker, Prediction::kConstrainedMultiParallelogram, 0});
-  }
-  Bytes smallest;
-  for (const StockSettings& settings : candidates) {
-    StatusOr<Bytes> stream = EncodeIntegerPositions(mesh, bits, settings);
-    if (stream.ok() && (smallest.empty() || stream.value().size() < smallest.size())) smallest = std::move(stream).value();
-  }
-  return smallest;
-}
-
 bool HoldsTriangles(const Bytes& stream, const std::vector<Corners>& triangles) {
-  if (stream.empty()) return false;
-  const StatusOr<DecodedBase> decoded = DecodeBaseMesh(stream, DecodeLimits());
+  const StatusOr<DecodedBase> decoded = DecodeBaseMesh(stream, kNoDecodeLimits);
   return decoded.ok() && SortedTriangles(decoded.value().mesh) == triangles;
 }
 
 }  // namespace
 
 StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits) {
-  if (bits < 1 || bits > 24) return InvalidArgument(std::to_string(bits) + " bits per coordinate; 1 to 24 are possible");
+  if (bits < 1 || bits > 24) {
+    return InvalidArgument(std::to_string(bits) + " bits per coordinate; 1 to 24 are possible");
+  }
   LACERTA_RETURN_IF_ERROR(CheckEncodable(mesh));
   LACERTA_ASSIGN_OR_RETURN(const GridMesh quantized, Quantize(mesh, bits));
-  const auto draco_mesh = ToDracoMesh(quantized.mesh);
   const std::vector<Corners> triangles = SortedTriangles(quantized.mesh);
 
   CodedZeroLevel result;
-  result.stream = SmallestEdgebreaker(*draco_mesh, bits);
-  result.sequential = !HoldsTriangles(result.stream, triangles);
-  if (result.sequential) {
-    const StockSettings settings = {StockSettings::Connectivity::kSequential, StockSettings::Prediction::kDifference, 0};
-    LACERTA_ASSIGN_OR_RETURN(result.stream, EncodeIntegerPositions(*draco_mesh, bits, settings));
+  StatusOr<StockAttempt> edgebreaker = SmallestEdgebreakerStream(quantized.mesh, bits);
+  if (edgebreaker.ok() && HoldsTriangles(edgebreaker.value().stream, triangles)) {
+    result.stream = std::move(edgebreaker).value().stream;
+  } else {
+    result.sequential = true;
+    const StockSettings settings = {StockSettings::Connectivity::kSequential, StockSettings::Prediction::kDifference,
+                                    0};
+    LACERTA_ASSIGN_OR_RETURN(result.stream, EncodeIntegerPositions(*ToDracoMesh(quantized.mesh), bits, settings));
     if (!HoldsTriangles(result.stream, triangles)) return InternalError("Draco did not keep the triangles of the mesh");
   }
   LACERTA_RETURN_IF_ERROR(SetQuantizationGrid(quantized.grid, &result.stream));
-  LACERTA_ASSIGN_OR_RETURN(DecodedBase decoded, DecodeBaseMesh(result.stream, DecodeLimits()));
+  LACERTA_ASSIGN_OR_RETURN(DecodedBase decoded, DecodeBaseMesh(result.stream, kNoDecodeLimits));
   result.mesh = std::move(decoded.mesh);
   return result;
 }

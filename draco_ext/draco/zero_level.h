@@ -14,12 +14,11 @@ struct CodedZeroLevel {
 };
 
 // Codes any mesh, manifold or not: positions are rounded to 2^bits - 1 steps along the longest side of the bounding box
-// (1 <= bits <= 24), so that each is off by at most half a step in every coordinate. The triangles are kept as a set with
-// their orientations, one to one, with degenerate ones and duplicates; vertices may come back in another order, split where
-// the mesh is not manifold, and without those of no triangle. The smallest of Draco's settings is taken; edgebreaker first,
-// sequential only where that does not keep the triangles.
-// Fails with kInvalidArgument on a bad number of bits, with kInvalidData on what CheckEncodable refuses and on a bounding
-// box that does not fit a float.
+// (1 <= bits <= 24), so that each is off by at most half a step in every coordinate. The triangles are kept as a set
+// with their orientations, one to one, with degenerate ones and duplicates; vertices may come back in another order,
+// split where the mesh is not manifold, and without those of no triangle. The smallest of Draco's settings is taken;
+// edgebreaker first, sequential only where that does not keep the triangles. Fails with kInvalidArgument on a bad
+// number of bits, with kInvalidData on what CheckEncodable refuses and on a bounding box that does not fit a float.
 StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits);
 
 }  // namespace lacerta

@@ -45,13 +45,20 @@ class Reach {
   uint32_t first_midpoint_;
 };
 
+// Sliding along the surface costs this share of what leaving it costs: little enough to be free, but vertices do not drift.
+constexpr float kSlideCost = 0.05f;
+
+// The metric of SurfaceTarget at a vertex with normal n, applied to an offset.
+Vec3f Weigh(const Vec3f& offset, const Vec3f& n) {
+  return offset * kSlideCost + n * ((1 - kSlideCost) * Dot(offset, n));
+}
+
 // Half the gradient of the distortion with respect to the positions of the finest level, brought down to `level`.
 std::vector<Vec3f> GradientAt(const SurfaceTarget& target, const std::vector<Vec3f>& positions, int level) {
   const std::vector<float>& mass = target.masses.back();
   std::vector<Vec3f> gradient(positions.size());
   for (size_t v = 0; v < positions.size(); ++v) {
-    const Vec3f& n = target.normals[v];
-    gradient[v] = n * (mass[v] * Dot(positions[v] - target.points[v], n));
+    gradient[v] = Weigh(positions[v] - target.points[v], target.normals[v]) * mass[v];
   }
   for (int l = target.num_levels() - 1; l >= level; --l) {
     const uint32_t num_vertices = target.topologies[l].num_vertices;
@@ -86,17 +93,15 @@ class LocalModel {
   Parabola Along(uint32_t v, const Vec3f& direction) const {
     Parabola p;
     reach_.Visit(v, [&](uint32_t u, float weight) {
-      const float along_normal = weight * Dot(direction, target_.normals[u]);
       p.slope += weight * Dot(gradient_[u], direction);
-      p.curvature += masses_[u] * along_normal * along_normal;
+      p.curvature += weight * weight * masses_[u] * Dot(direction, Weigh(direction, target_.normals[u]));
     });
     return p;
   }
 
   void Move(uint32_t v, const Vec3f& displacement) {
     reach_.Visit(v, [&](uint32_t u, float weight) {
-      const Vec3f& n = target_.normals[u];
-      gradient_[u] += n * (masses_[u] * weight * Dot(displacement, n));
+      gradient_[u] += Weigh(displacement, target_.normals[u]) * (masses_[u] * weight);
     });
   }
 
@@ -107,10 +112,13 @@ class LocalModel {
   std::vector<Vec3f> gradient_;
 };
 
-// The quantized value that lowers distortion + lambda * bits most: near the bottom of the parabola, or nearer to zero.
+// The quantized value that lowers distortion + lambda * bits most: near the bottom of the parabola, or nearer to zero. The
+// parabola holds for moves up to `reach`.
 template <typename BitsOf>
-int32_t BestValue(const LocalModel::Parabola& parabola, int32_t current, float step, double lambda, const BitsOf& bits_of) {
-  const int32_t target = RoundToStep(static_cast<float>(current) * step + parabola.Lowest(), step);
+int32_t BestValue(const LocalModel::Parabola& parabola, int32_t current, float step, float reach, double lambda,
+                  const BitsOf& bits_of) {
+  const float move = std::clamp(parabola.Lowest(), -reach, reach);
+  const int32_t target = RoundToStep(static_cast<float>(current) * step + move, step);
   const int32_t toward_zero = target - (target > 0) + (target < 0);
   int32_t best = current;
   double best_cost = lambda * bits_of(current);
@@ -159,13 +167,55 @@ void DescendLevel(const SurfaceTarget& target, const std::vector<Vec3f>& positio
                                                                      : frame.tangent2;
     const float step = kind == CoefficientKind::kNormal ? steps.normal_step : steps.tangential_step;
     const uint32_t v = coarse.num_vertices + edge;
-    const int32_t best = BestValue(model.Along(v, direction), *value, step, lambda,
+    constexpr float kTrust = 0.25f;  // of the edge
+    const float reach = kTrust * Norm(positions[coarse.edges[edge][1]] - positions[coarse.edges[edge][0]]);
+    const int32_t best = BestValue(model.Along(v, direction), *value, step, reach, lambda,
                                    [&](int32_t q) { return CoefficientBits(models, context, q); });
     if (best == *value) return;
     model.Move(v, direction * (static_cast<float>(best - *value) * step));
     *value = best;
   };
   CodeLevel(coarse, steps, state, &coded->levels[level - 1], &meter, choose);
+}
+
+// Bits of the two sets of every level.
+struct SetBits {
+  double normal = 0, tangential = 0;
+};
+std::vector<SetBits> CountBits(const SurfaceTarget& target, CodedSurface coded) {
+  std::vector<SetBits> bits(coded.levels.size());
+  CodingState state;
+  for (size_t i = 0; i < coded.levels.size(); ++i) {
+    BitMeter meter;
+    double before_tangential = -1;
+    CodeLevel(target.topologies[i], coded.steps[i], &state, &coded.levels[i], &meter,
+              [&](CoefficientKind kind, uint32_t, const SetModels&, const CoefficientContext&, const int32_t*) {
+                if (kind != CoefficientKind::kNormal && before_tangential < 0) before_tangential = meter.bits();
+              });
+    if (before_tangential < 0) before_tangential = meter.bits();
+    bits[i] = {before_tangential, meter.bits() - before_tangential};
+  }
+  return bits;
+}
+
+// Leaves out whole sets, finest first, where that saves more rate than it costs distortion: zeros are cheap, not free.
+void DropIdleSets(const SurfaceTarget& target, double lambda, CodedSurface* coded) {
+  double distortion = PlaneDistortion(target, Synthesize(target, *coded));
+  const auto try_without = [&](float LevelSteps::*step, std::vector<int32_t> QuantizedLevel::*values, size_t i, double bits) {
+    if (bits == 0) return;
+    CodedSurface without = *coded;
+    without.steps[i].*step = 0;
+    std::fill((without.levels[i].*values).begin(), (without.levels[i].*values).end(), 0);
+    const double raised = PlaneDistortion(target, Synthesize(target, without));
+    if (raised - distortion > lambda * bits) return;
+    distortion = raised;
+    *coded = std::move(without);
+  };
+  const std::vector<SetBits> bits = CountBits(target, *coded);
+  for (size_t i = bits.size(); i-- > 0;) {
+    try_without(&LevelSteps::tangential_step, &QuantizedLevel::tangential, i, bits[i].tangential);
+    try_without(&LevelSteps::normal_step, &QuantizedLevel::normal, i, bits[i].normal);
+  }
 }
 
 }  // namespace
@@ -229,6 +279,7 @@ CodedSurface Descend(const SurfaceTarget& target, CodedSurface coded, const Desc
       DescendLevel(target, Synthesize(target, coded), level, options.lambda, &coded, &state);
     }
   }
+  DropIdleSets(target, options.lambda, &coded);
   return coded;
 }
 

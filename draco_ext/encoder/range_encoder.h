@@ -57,7 +57,8 @@ class RangeEncoder {
   void ShiftLow() {
     const bool carry = low_ >> 32 != 0;
     if (carry || static_cast<uint32_t>(low_) < 0xff000000u) {
-      if (started_) bytes_.push_back(static_cast<uint8_t>(cache_ + carry));  // the very first byte is always 0: left out
+      if (started_)
+        bytes_.push_back(static_cast<uint8_t>(cache_ + carry));  // the very first byte is always 0: left out
       for (; pending_ > 0; --pending_) bytes_.push_back(static_cast<uint8_t>(0xff + carry));
       started_ = true;
       cache_ = static_cast<uint8_t>(low_ >> 24);

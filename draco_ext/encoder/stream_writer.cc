@@ -29,9 +29,13 @@ void PutVarint(size_t value, Bytes* bytes) {
   bytes->push_back(static_cast<uint8_t>(value));
 }
 
-void PutStep(float step, uint8_t bias, Bytes* bytes) {
-  PutWord16(StepToBits(step), bytes);
-  if (step > 0) bytes->push_back(bias);
+void PutSteps(const LevelSteps& s, Bytes* bytes) {
+  PutWord16(StepToBits(s.normal_step), bytes);
+  PutWord16(StepToBits(s.tangential_step), bytes);
+  const int normal_bias = s.normal_step > 0 ? s.normal_bias : 0;
+  const int tangential_bias = s.tangential_step > 0 ? s.tangential_bias : 0;
+  if (s.normal_step > 0 || s.tangential_step > 0)
+    bytes->push_back(static_cast<uint8_t>(normal_bias | tangential_bias << 4));
 }
 
 Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps) {
@@ -44,10 +48,7 @@ Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps) {
   std::memcpy(&step_bits, &base.step, sizeof(step_bits));
   PutWord32(step_bits, &bytes);
   PutWord32(BaseChecksum(base), &bytes);
-  for (const LevelSteps& s : steps) {
-    PutStep(s.normal_step, s.normal_bias, &bytes);
-    PutStep(s.tangential_step, s.tangential_bias, &bytes);
-  }
+  for (const LevelSteps& s : steps) PutSteps(s, &bytes);
   Crc32 crc;
   crc.Add(bytes);
   PutWord16(crc.low16(), &bytes);
@@ -65,7 +66,8 @@ Status CheckSet(const char* name, int level, const std::vector<int32_t>& set, si
   if (set.size() != size) {
     return InvalidArgument(where + " has " + std::to_string(set.size()) + " coefficients, not " + std::to_string(size));
   }
-  if (RoundStep(step) != step || bias > kMaxBias) return InvalidArgument(where + ": the step is not rounded or the bias over 15");
+  if (RoundStep(step) != step || bias > kMaxBias)
+    return InvalidArgument(where + ": the step is not rounded or the bias over 15");
   uint32_t largest = 0;
   for (const int32_t q : set) largest = std::max(largest, Magnitude(q));
   if (largest <= static_cast<uint32_t>(step > 0 ? kMaxMagnitude : 0)) return Status();
@@ -75,14 +77,16 @@ Status CheckSet(const char* name, int level, const std::vector<int32_t>& set, si
 
 Status CheckLevel(int level, const Topology& t, const LevelSteps& steps, const QuantizedLevel& q) {
   LACERTA_RETURN_IF_ERROR(CheckSet("normal", level, q.normal, t.num_edges(), steps.normal_step, steps.normal_bias));
-  return CheckSet("tangential", level, q.tangential, size_t{2} * t.num_edges(), steps.tangential_step, steps.tangential_bias);
+  return CheckSet("tangential", level, q.tangential, size_t{2} * t.num_edges(), steps.tangential_step,
+                  steps.tangential_bias);
 }
 
 }  // namespace
 
 StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_levels) {
   if (num_levels < 0 || num_levels > kMaxLevels) {
-    return InvalidArgument(std::to_string(num_levels) + " levels; 0 to " + std::to_string(kMaxLevels) + " are possible");
+    return InvalidArgument(std::to_string(num_levels) + " levels; 0 to " + std::to_string(kMaxLevels) +
+                           " are possible");
   }
   std::vector<Topology> topologies;
   if (num_levels == 0) return topologies;
@@ -102,7 +106,8 @@ StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_le
 }
 
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topology> topologies,
-                                          const std::vector<LevelSteps>& steps, const std::vector<QuantizedLevel>& levels) {
+                                          const std::vector<LevelSteps>& steps,
+                                          const std::vector<QuantizedLevel>& levels) {
   if (topologies.size() != levels.size() || steps.size() != levels.size()) {
     return InvalidArgument("numbers of topologies, steps and levels differ");
   }
@@ -127,7 +132,8 @@ StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topol
 
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, const std::vector<LevelSteps>& steps,
                                           const std::vector<QuantizedLevel>& levels) {
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<Topology> topologies, BuildTopologies(base, static_cast<int>(levels.size())));
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<Topology> topologies,
+                           BuildTopologies(base, static_cast<int>(levels.size())));
   return WriteRefinement(base, topologies, steps, levels);
 }
 

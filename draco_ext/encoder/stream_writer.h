@@ -19,19 +19,21 @@ struct RefinementBytes {
   std::vector<size_t> part_sizes;
 };
 
-// Connectivity of the levels whose edges carry coefficients: levels 0 .. num_levels - 1. Fails with kInvalidData where the
-// base cannot be refined (BuildTopology; more than 1,024 edges at a vertex) and with kInvalidArgument where num_levels is
-// not 0..12 or the finest level would have 2^31 edges or more.
+// Connectivity of the levels whose edges carry coefficients: levels 0 .. num_levels - 1. Fails with kInvalidData where
+// the base cannot be refined (BuildTopology; more than 1,024 edges at a vertex) and with kInvalidArgument where
+// num_levels is not 0..12 or the finest level would have 2^31 edges or more.
 StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_levels);
 
 // Writes a refinement.
 //   topologies  of BuildTopologies(base, L)
 //   steps       L: quantization of levels 1..L, steps as RoundStep returns them
-//   levels      L: coefficients; levels[i] has one entry per edge of topologies[i], magnitudes up to kMaxMagnitude, and is
+//   levels      L: coefficients; levels[i] has one entry per edge of topologies[i], magnitudes up to kMaxMagnitude, and
+//   is
 //               zero where its step is zero
 // No level, no bytes. Fails with kInvalidArgument where an argument breaks these rules.
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topology> topologies,
-                                          const std::vector<LevelSteps>& steps, const std::vector<QuantizedLevel>& levels);
+                                          const std::vector<LevelSteps>& steps,
+                                          const std::vector<QuantizedLevel>& levels);
 
 // The same, making the topologies itself.
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, const std::vector<LevelSteps>& steps,

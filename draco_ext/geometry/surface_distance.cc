@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -17,21 +16,17 @@ namespace lacerta {
 
 // A mesh ready to be sampled and to be measured against.
 struct SurfaceDistanceMeter::Surface {
-  explicit Surface(const TriangleMesh& mesh) : tree(mesh), diagonal(BoundingBoxDiagonal(mesh)) {
-    const std::vector<uint32_t>& faces = tree.faces_in_tree_order();
-    corners.reserve(faces.size());
-    cumulated_area.reserve(faces.size());
+  Surface(const TriangleMesh& mesh, bool with_vertices) : tree(mesh) {
+    cumulated_area.reserve(tree.corners_in_tree_order().size());
     double area = 0.0;
-    for (const uint32_t f : faces) {
-      const Triangle& t = mesh.triangles[f];
-      corners.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
-      const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
-      area += Norm(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a));
+    for (const TriangleTree::Corners& corners : tree.corners_in_tree_order()) {
+      const Vec3d a = Vec3Cast<double>(corners[0]);
+      area += Norm(Cross(Vec3Cast<double>(corners[1]) - a, Vec3Cast<double>(corners[2]) - a));
       cumulated_area.push_back(area);
     }
-    // Every used vertex once, where the tree order first meets it.
+    if (!with_vertices) return;
     std::vector<bool> seen(mesh.positions.size());
-    for (const uint32_t f : faces) {
+    for (const uint32_t f : tree.faces_in_tree_order()) {
       for (const uint32_t v : mesh.triangles[f]) {
         if (!seen[v]) vertices.push_back(mesh.positions[v]);
         seen[v] = true;
@@ -39,20 +34,20 @@ struct SurfaceDistanceMeter::Surface {
     }
   }
 
-  double area() const { return cumulated_area.empty() ? 0.0 : cumulated_area.back(); }
-
   TriangleTree tree;
-  // In tree order, so that consecutive samples are neighbours in space.
-  std::vector<std::array<Vec3f, 3>> corners;
-  std::vector<double> cumulated_area;  // doubled area of the triangles up to and with this one
-  std::vector<Vec3f> vertices;
-  double diagonal;
+  // Doubled area of the triangles up to and with this one, in tree order: consecutive samples are neighbours in space.
+  std::vector<double> cumulated_area;
+  std::vector<Vec3f> vertices;  // those in use, once each, where the tree order first meets them
+  double diagonal = 0.0;
 };
 
 namespace {
 
 // Queries done in a row by one thread. Sums are taken per block and then in the order of the blocks.
 constexpr uint64_t kBlockSize = 2048;
+
+// Squares of distances 100 dB below this are still in the range of float, in which the tree returns them.
+constexpr double kMinDiagonal = 1e-12;
 
 double Fraction(double x) { return x - std::floor(x); }
 
@@ -63,7 +58,7 @@ double Fraction(double x) { return x - std::floor(x); }
 // three.
 class Sampler {
  public:
-  Sampler(const std::vector<std::array<Vec3f, 3>>& corners, const std::vector<double>& cumulated_area,
+  Sampler(const std::vector<TriangleTree::Corners>& corners, const std::vector<double>& cumulated_area,
           const SurfaceDistanceOptions& options)
       : corners_(corners), cumulated_area_(cumulated_area), options_(options) {}
 
@@ -95,7 +90,7 @@ class Sampler {
     slot_ = std::min(slot_, cumulated_area_.size() - 1);
   }
 
-  const std::vector<std::array<Vec3f, 3>>& corners_;
+  const std::vector<TriangleTree::Corners>& corners_;
   const std::vector<double>& cumulated_area_;
   const SurfaceDistanceOptions& options_;
   size_t slot_ = 0;
@@ -186,9 +181,14 @@ SurfaceDistanceMeter::~SurfaceDistanceMeter() = default;
 
 StatusOr<SurfaceDistanceMeter> SurfaceDistanceMeter::Create(const TriangleMesh& original) {
   LACERTA_RETURN_IF_ERROR(CheckMesh(original).WithContext("original"));
-  auto surface = std::make_unique<const Surface>(original);
-  if (!(surface->area() > 0.0))
+  auto surface = std::make_unique<Surface>(original, /*with_vertices=*/true);
+  surface->diagonal = BoundingBoxDiagonal(original);
+  if (!(surface->cumulated_area.back() > 0.0)) {
     return InvalidData("original: all triangles are degenerate, there is no area to sample");
+  }
+  if (!(surface->diagonal >= kMinDiagonal)) {
+    return InvalidData("original: its bounding box is smaller than 1e-12 units; scale the mesh up");
+  }
   return SurfaceDistanceMeter(std::move(surface));
 }
 
@@ -199,17 +199,17 @@ StatusOr<SurfaceDistance> SurfaceDistanceMeter::Measure(const TriangleMesh& mesh
                            std::to_string(SurfaceDistanceOptions::kMaxSamples));
   }
   LACERTA_RETURN_IF_ERROR(CheckMesh(mesh).WithContext("measured mesh"));
-  const Surface other(mesh);
-  if (!(other.area() > 0.0)) {
+  const Surface other(mesh, options.max_at_vertices);
+  if (!(other.cumulated_area.back() > 0.0)) {
     return InvalidData("measured mesh: all triangles are degenerate, there is no area to sample");
   }
   const auto measure = [&options](const Surface& from, const Surface& to) {
     const BlockSum samples = SumOverBlocks(options.num_samples, to.tree, [&] {
-      return [sampler = Sampler(from.corners, from.cumulated_area, options)](uint64_t i) mutable {
+      return [sampler = Sampler(from.tree.corners_in_tree_order(), from.cumulated_area, options)](uint64_t i) mutable {
         return sampler.Sample(i);
       };
     });
-    const BlockSum vertices = SumOverBlocks(from.vertices.size(), to.tree,
+    const BlockSum vertices = SumOverBlocks(options.max_at_vertices ? from.vertices.size() : 0, to.tree,
                                             [&from] { return [&from](uint64_t i) { return from.vertices[i]; }; });
     return OneSidedDistance{std::sqrt(samples.sum2 / static_cast<double>(options.num_samples)),
                             std::sqrt(std::max(samples.max2, vertices.max2))};

@@ -37,6 +37,8 @@ struct LineHit {
 // point that they look like to ClosestPoint, and invisible to IntersectLine.
 class TriangleTree {
  public:
+  using Corners = std::array<Vec3f, 3>;
+
   // Squares of larger coordinates would leave the range of float.
   static constexpr float kMaxCoordinate = 1e18f;
 
@@ -59,35 +61,34 @@ class TriangleTree {
   void IntersectLine(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max,
                      std::vector<LineHit>* hits) const;
 
-  // The faces in the order of the tree, in which neighbours in the list are mostly neighbours in space. Without those
-  // left out.
+  // The faces, without those left out, in an order in which neighbours in the list are mostly neighbours in space.
   const std::vector<uint32_t>& faces_in_tree_order() const { return faces_; }
+  // The corners of those faces.
+  const std::vector<Corners>& corners_in_tree_order() const { return corners_; }
 
  private:
   static constexpr int kWidth = 4;  // children of a node
 
-  // Boxes of the children as structure of arrays, so that the compiler tests four at once.
+  // Boxes of the children as structure of arrays and by center and half size, so that the compiler tests four at once.
   struct alignas(64) Node {
-    float min[3][kWidth];
-    float max[3][kWidth];
-    uint32_t child[kWidth];  // a node, or the first slot of a leaf
-    uint32_t count[kWidth];  // 0: a node, else the number of triangles in the leaf
-  };
-  struct Corners {
-    Vec3f a, b, c;
+    float center[3][kWidth];
+    float half_size[3][kWidth];  // negative in a missing child
+    uint32_t child[kWidth];      // a node, or the first slot of a leaf
+    uint32_t count[kWidth];      // 0: a node, else the number of triangles in the leaf
   };
   struct Reference;  // a face while the tree is built
   struct Search;     // what a closest point query has found so far
 
-  uint32_t BuildNode(Reference* first, Reference* last, const Reference* all, int depth);
+  uint32_t BuildNode(Reference* first, Reference* last, const Reference* all, int depth,
+                     std::vector<Node>* nodes) const;
   void TestSlot(uint32_t slot, Search* search) const;
   ClosestPointResult Finish(const Search& search) const;
   void Traverse(Search* search) const;
 
-  std::vector<Node> nodes_;         // the first is the root; empty when there is no triangle
-  std::vector<Corners> triangles_;  // per slot
-  std::vector<uint32_t> faces_;     // per slot
-  std::vector<uint32_t> slots_;     // per face of the mesh; kNone for those left out
+  std::vector<Node> nodes_;       // the first is the root; empty when there is no triangle
+  std::vector<Corners> corners_;  // per slot
+  std::vector<uint32_t> faces_;   // per slot
+  std::vector<uint32_t> slots_;   // per face of the mesh; kNone for those left out
   float padding_ = 0.0f;  // by which every box is larger than what it holds: a few ulps of the largest coordinate
 };
 

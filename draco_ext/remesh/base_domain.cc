@@ -30,7 +30,9 @@ void BaseDomain::BuildTables() {
   topology_ = BuildTopology(num_vertices(), triangles_).value();  // a closed manifold stays one through every collapse
 }
 
-void BaseDomain::Reorder(const std::vector<uint32_t>& new_vertex, const std::vector<Triangle>& triangles) {
+void BaseDomain::Reorder(const std::vector<uint32_t>& vertex_map, const std::vector<Triangle>& triangles) {
+  std::vector<uint32_t> new_vertex(vertex_map.size());
+  for (uint32_t v = 0; v < vertex_map.size(); ++v) new_vertex[vertex_map[v]] = v;
   std::map<Triangle, uint32_t> old_face;  // by its vertices in new numbers, the smallest first
   const auto canonical = [](Triangle t) {
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
@@ -50,8 +52,8 @@ void BaseDomain::Reorder(const std::vector<uint32_t>& new_vertex, const std::vec
     history_face.push_back(history_face_[old]);
     rotation.push_back(static_cast<uint8_t>((rotation_[old] + shift) % 3));
   }
-  std::vector<uint32_t> input_vertex(input_vertex_.size());
-  for (uint32_t v = 0; v < input_vertex_.size(); ++v) input_vertex[new_vertex[v]] = input_vertex_[v];
+  std::vector<uint32_t> input_vertex(vertex_map.size());
+  for (uint32_t v = 0; v < vertex_map.size(); ++v) input_vertex[v] = input_vertex_[vertex_map[v]];
   triangles_ = triangles;
   input_vertex_ = std::move(input_vertex);
   history_face_ = std::move(history_face);

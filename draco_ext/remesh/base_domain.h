@@ -27,9 +27,9 @@ class BaseDomain {
   uint32_t input_vertex(uint32_t v) const { return input_vertex_[v]; }
   const Topology& topology() const { return topology_; }
 
-  // Renumbers vertices and faces: base vertex v becomes new_vertex[v], and `triangles` (in new numbers) gives the new order
-  // and rotation of the faces.
-  void Reorder(const std::vector<uint32_t>& new_vertex, const std::vector<Triangle>& triangles);
+  // Renumbers vertices and faces: vertex_map[v] is the present number of the vertex that will be v, and `triangles` (in new
+  // numbers) gives the new order and rotation of the faces.
+  void Reorder(const std::vector<uint32_t>& vertex_map, const std::vector<Triangle>& triangles);
 
   // Point of the domain (face: base face) of a point on a face of the input, and back.
   DomainPoint FromInput(const DomainPoint& on_input) const;

@@ -66,9 +66,9 @@ StatusOr<ComponentType> FromDracoDataType(draco::DataType type) {
 }
 
 // Draco throws nothing itself, but its containers do when a damaged stream asks for too much memory.
-StatusOr<std::unique_ptr<draco::Mesh>> DecodeStock(Span<const uint8_t> bytes) {
+StatusOr<std::unique_ptr<draco::Mesh>> DecodeStock(Span<const uint8_t> bytes, const DecodeLimits& limits) {
   try {
-    LACERTA_ASSIGN_OR_RETURN(StockMesh stock, DecodeStockStream(bytes, DecodeLimits{}));
+    LACERTA_ASSIGN_OR_RETURN(StockMesh stock, DecodeStockStream(bytes, limits));
     return std::move(stock.mesh);
   } catch (const std::exception& error) {
     return InvalidData(std::string("the Draco stream is damaged (") + error.what() + ")");
@@ -193,13 +193,14 @@ StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive,
 
 }  // namespace
 
-StatusOr<Primitive> DecodeDracoPrimitive(Span<const uint8_t> bytes, const std::vector<DracoAttributeId>& ids) {
-  LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, DecodeStock(bytes));
+StatusOr<Primitive> DecodeDracoPrimitive(Span<const uint8_t> bytes, const std::vector<DracoAttributeId>& ids,
+                                         const DecodeLimits& limits) {
+  LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, DecodeStock(bytes, limits));
   return ToPrimitive(*mesh, ids);
 }
 
 StatusOr<uint32_t> DracoPositionId(Span<const uint8_t> bytes) {
-  LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, DecodeStock(bytes));
+  LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, DecodeStock(bytes, DecodeLimits{}));
   const draco::PointAttribute* position = mesh->GetNamedAttribute(draco::GeometryAttribute::POSITION);
   if (position == nullptr) return InvalidData("the Draco stream has no positions");
   return position->unique_id();
@@ -236,7 +237,7 @@ StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const Po
   for (size_t i = 0; i < primitive.attributes.size(); ++i) {
     result.ids.push_back({primitive.attributes[i].name, mesh->attribute(static_cast<int>(i))->unique_id()});
   }
-  LACERTA_ASSIGN_OR_RETURN(result.decoded, DecodeDracoPrimitive(result.bytes, result.ids));
+  LACERTA_ASSIGN_OR_RETURN(result.decoded, DecodeDracoPrimitive(result.bytes, result.ids, DecodeLimits{}));
   if (result.decoded.triangles.empty()) return Unsupported("holds only degenerate triangles");
   return result;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "document/primitive.h"
+#include "lacerta/decoder.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
 
@@ -18,8 +19,9 @@ struct DracoAttributeId {
 };
 
 // Decodes a stock stream; bytes after it are ignored. Attributes come in the order of `ids`.
-// Fails with kInvalidData on a damaged stream, a missing attribute or an index out of range.
-StatusOr<Primitive> DecodeDracoPrimitive(Span<const uint8_t> bytes, const std::vector<DracoAttributeId>& ids);
+// Fails with kInvalidData on a damaged stream, a missing attribute or an index out of range, and with kLimitExceeded.
+StatusOr<Primitive> DecodeDracoPrimitive(Span<const uint8_t> bytes, const std::vector<DracoAttributeId>& ids,
+                                         const DecodeLimits& limits);
 
 // The unique id of the position attribute of a stock stream.
 StatusOr<uint32_t> DracoPositionId(Span<const uint8_t> bytes);

@@ -1,5 +1,5 @@
-// Progressive decoding of the refinement of a base mesh that the caller already has. Integers steer, floats only follow.
-// Everything here is safe on untrusted bytes: counts are checked against DecodeLimits before memory is taken.
+// Progressive decoding of the refinement of a base mesh that the caller already has. Integers steer, floats only
+// follow. Everything here is safe on untrusted bytes: counts are checked against DecodeLimits before memory is taken.
 #ifndef LACERTA_DECODER_H_
 #define LACERTA_DECODER_H_
 
@@ -15,16 +15,17 @@
 
 namespace lacerta {
 
-// Budget of a decoder. A stream that would exceed it is refused with kLimitExceeded, or decoded up to the last level that fits.
+// Budget of a decoder. A stream that would exceed it is refused with kLimitExceeded, or decoded up to the last level
+// that fits.
 struct DecodeLimits {
   uint64_t max_vertices = 64u << 20;
   uint64_t max_triangles = 128u << 20;
 };
 
-// A base mesh on an integer lattice: vertex v lies at `step` * lattice[v]. A refinement fits exactly one of them: the same
-// vertices and triangles in the same order.
+// A base mesh on an integer lattice: vertex v lies at `step` * lattice[v]. A refinement fits exactly one of them: the
+// same vertices and triangles in the same order.
 struct BaseMesh {
-  float step = 0.0f;                           // model units, > 0 and finite
+  float step = 0.0f;                            // model units, > 0 and finite
   std::vector<std::array<int32_t, 3>> lattice;  // #V0, |value| < 2^24
   std::vector<Triangle> triangles;              // #F0
 
@@ -36,8 +37,8 @@ struct BaseMesh {
 // coordinate is not finite, further than a quarter of a step away from the lattice, or |lattice| reaches 2^24.
 StatusOr<BaseMesh> BaseMeshFromPositions(const TriangleMesh& mesh, float step);
 
-// The triangle mesh of one level (0 = base) of a semi-regular mesh. Fails with kInvalidArgument where it has no such level
-// and with kInvalidData where the base is not manifold.
+// The triangle mesh of one level (0 = base) of a semi-regular mesh. Fails with kInvalidArgument where it has no such
+// level and with kInvalidData where the base is not manifold.
 StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level);
 
 // What the header of a refinement tells before anything is decoded.
@@ -48,8 +49,8 @@ struct RefinementInfo {
   float base_step = 0.0f;  // model units: what BaseMeshFromPositions wants
 };
 
-// Reads the header at the beginning of the bytes that follow the base section. Fails with kInvalidData where there is no
-// complete and sound header, and with kUnsupported on an unknown version.
+// Reads the header at the beginning of the bytes that follow the base section. Fails with kInvalidData where there is
+// no complete and sound header, and with kUnsupported on an unknown version.
 StatusOr<RefinementInfo> ReadRefinementInfo(Span<const uint8_t> refinement);
 
 struct RefinementOptions {
@@ -74,11 +75,11 @@ class ProgressiveDecoder {
   // Bytes after the last segment are ignored.
   Status Append(Span<const uint8_t> bytes);
 
-  int level() const;         // of the finest complete level
-  int num_levels() const;    // that the header announces; 0 before it is complete
+  int level() const;          // of the finest complete level
+  int num_levels() const;     // that the header announces; 0 before it is complete
   size_t bytes_used() const;  // length of the prefix that holds mesh(): header and complete segments
-  // Ok, or why the refinement ended early: damaged or unsupported bytes (kInvalidData, kUnsupported), a base that it was
-  // not made for (kInvalidData), or a level over the limits (kLimitExceeded). Bytes that just end are no failure.
+  // Ok, or why the refinement ended early: damaged or unsupported bytes (kInvalidData, kUnsupported), a base that it
+  // was not made for (kInvalidData), or a level over the limits (kLimitExceeded). Bytes that just end are no failure.
   const Status& refinement() const;
   const SemiRegularMesh& mesh() const;  // base and complete levels
 
@@ -89,10 +90,10 @@ class ProgressiveDecoder {
 };
 
 struct RefinementResult {
-  SemiRegularMesh mesh;   // base and complete levels
-  int level = 0;          // of mesh
-  int num_levels = 0;     // that the header announces; 0 where there is no complete header
-  Status refinement;      // as ProgressiveDecoder::refinement(); ok with level < num_levels: the bytes ended (or max_level)
+  SemiRegularMesh mesh;  // base and complete levels
+  int level = 0;         // of mesh
+  int num_levels = 0;    // that the header announces; 0 where there is no complete header
+  Status refinement;  // as ProgressiveDecoder::refinement(); ok with level < num_levels: the bytes ended (or max_level)
   size_t bytes_used = 0;  // as ProgressiveDecoder::bytes_used()
 };
 

@@ -1,15 +1,15 @@
-// Encoder and decoder in Draco's manner: draco::Mesh in and out of draco::EncoderBuffer and draco::DecoderBuffer. The only
-// public header that includes Draco; compile it with the headers of the very Draco library that is linked.
+// Encoder and decoder in Draco's manner: draco::Mesh in and out of draco::EncoderBuffer and draco::DecoderBuffer. The
+// only public header that includes Draco; compile it with the headers of the very Draco library that is linked.
 #ifndef LACERTA_DRACO_H_
 #define LACERTA_DRACO_H_
-
-#include <memory>
 
 #include <draco/core/decoder_buffer.h>
 #include <draco/core/encoder_buffer.h>
 #include <draco/core/status.h>
 #include <draco/core/status_or.h>
 #include <draco/mesh/mesh.h>
+
+#include <memory>
 
 #include "lacerta/codec.h"
 #include "lacerta/status.h"
@@ -29,8 +29,8 @@ class Encoder {
 
   EncodeOptions& options() { return options_; }
 
-  // Appends the stream to `out_buffer`. The custom form keeps the metadata of the mesh. Fails as EncodeMesh (lacerta/codec.h)
-  // does, and on meshes without a POSITION attribute of three components.
+  // Appends the stream to `out_buffer`. The custom form keeps the metadata of the mesh. Fails as EncodeMesh
+  // (lacerta/codec.h) does, and on meshes without a POSITION attribute of three components.
   draco::Status EncodeMeshToBuffer(const draco::Mesh& mesh, draco::EncoderBuffer* out_buffer);
 
   // Of the last mesh that was coded.
@@ -41,7 +41,8 @@ class Encoder {
   EncodeReport report_;
 };
 
-// Decodes streams in Draco form and custom form, and any stock Draco mesh stream. Safe on untrusted bytes as DecodeMesh is.
+// Decodes streams in Draco form and custom form, and any stock Draco mesh stream. Safe on untrusted bytes as DecodeMesh
+// is.
 //   Decoder decoder;
 //   auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
 //   if (!mesh.ok()) ...

@@ -47,16 +47,17 @@ T Norm(const Vec3<T>& a) {
   return std::sqrt(Dot(a, a));
 }
 
-// a / |a|, or the zero vector where |a| is zero or not finite.
-template <typename T>
-Vec3<T> Normalized(const Vec3<T>& a) {
-  const T norm = Norm(a);
-  return norm > T(0) && std::isfinite(norm) ? a * (T(1) / norm) : Vec3<T>{};
-}
-
 template <typename To, typename From>
 Vec3<To> Vec3Cast(const Vec3<From>& a) {
   return {static_cast<To>(a.x), static_cast<To>(a.y), static_cast<To>(a.z)};
+}
+
+// a / |a|, or the zero vector where |a| is zero or not finite. In double, so that squares of tiny area vectors do not vanish.
+template <typename T>
+Vec3<T> Normalized(const Vec3<T>& a) {
+  const Vec3d b = Vec3Cast<double>(a);
+  const double norm = Norm(b);
+  return norm > 0.0 && std::isfinite(norm) ? Vec3Cast<T>(b * (1.0 / norm)) : Vec3<T>{};
 }
 
 }  // namespace lacerta

@@ -147,7 +147,8 @@ void ExpectRefused(const BaseMesh& base, const std::string& reason) {
 TEST(BaseMeshCodecTest, RefusesBadInput) {
   ExpectRefused(BaseMesh{1.0f, {}, {}}, "empty");
   BaseMesh base = Octahedron();
-  for (const float step : {0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+  for (const float step :
+       {0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     base.step = step;
     ExpectRefused(base, "step");
   }

@@ -1,4 +1,5 @@
-// Meshes for the tests of the Draco layer: small shapes with one property each, and the real ones where they are to be had.
+// Meshes for the tests of the Draco layer: small shapes with one property each, and the real ones where they are to be
+// had.
 #ifndef LACERTA_TESTS_DRACO_EXT_DRACO_TEST_MESHES_H_
 #define LACERTA_TESTS_DRACO_EXT_DRACO_TEST_MESHES_H_
 

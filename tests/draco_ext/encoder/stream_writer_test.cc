@@ -1,7 +1,9 @@
 #include "encoder/stream_writer.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -16,6 +18,7 @@ using ::lacerta::testing::Octahedron;
 using ::lacerta::testing::RandomCoefficients;
 using ::lacerta::testing::Square;
 using ::lacerta::testing::Torus;
+using ::testing::HasSubstr;
 
 // What a decoder of these coefficients must arrive at.
 std::vector<Vec3f> Synthesize(const BaseMesh& base, const Coefficients& c) {
@@ -32,7 +35,8 @@ void ExpectRoundTrip(const BaseMesh& base, const Coefficients& c) {
   ASSERT_TRUE(written.ok()) << written.status().message();
   const RefinementBytes& refinement = written.value();
   EXPECT_EQ(refinement.part_sizes.size(), c.levels.size());
-  EXPECT_EQ(std::accumulate(refinement.part_sizes.begin(), refinement.part_sizes.end(), size_t{0}), refinement.bytes.size());
+  EXPECT_EQ(std::accumulate(refinement.part_sizes.begin(), refinement.part_sizes.end(), size_t{0}),
+            refinement.bytes.size());
   const StatusOr<RefinementResult> decoded = DecodeRefinement(base, refinement.bytes, {});
   ASSERT_TRUE(decoded.ok()) << decoded.status().message();
   EXPECT_TRUE(decoded.value().refinement.ok()) << decoded.value().refinement.message();
@@ -48,7 +52,74 @@ TEST(StreamWriterTest, RoundTripsClosedMeshes) {
 
 TEST(StreamWriterTest, RoundTripsMeshWithBorder) { ExpectRoundTrip(Square(), RandomCoefficients(Square(), 4, 3)); }
 
-TEST(StreamWriterTest, RoundTripsLargeCoefficients) { ExpectRoundTrip(Octahedron(), RandomCoefficients(Octahedron(), 3, 4, 30000)); }
+TEST(StreamWriterTest, RoundTripsLargeCoefficients) {
+  ExpectRoundTrip(Octahedron(), RandomCoefficients(Octahedron(), 3, 4, 30000));
+}
+
+TEST(StreamWriterTest, NoLevelNoByte) {
+  const RefinementBytes refinement = WriteRefinement(Octahedron(), {}, {}).value();
+  EXPECT_TRUE(refinement.bytes.empty());
+  EXPECT_TRUE(refinement.part_sizes.empty());
+}
+
+TEST(StreamWriterTest, FixedOverheadIsSmall) {
+  // Five levels on 200 vertices: 44 bytes of header, 5 times length (1) and checksum (2), and zeros, which cost a few
+  // bits.
+  const BaseMesh base = Torus(10, 20);
+  Coefficients c = RandomCoefficients(base, 5, 1, 0.0);
+  c.steps[1].tangential_step = c.steps[0].tangential_step;
+  const size_t size = WriteRefinement(base, c.steps, c.levels).value().bytes.size();
+  EXPECT_GE(size, 44u + 15u);
+  EXPECT_LE(size, 44u + 15u + 5 * 12u);
+  for (LevelSteps& steps : c.steps) steps = {};
+  EXPECT_EQ(WriteRefinement(base, c.steps, c.levels).value().bytes.size(), 44u - 5u + 15u);
+}
+
+TEST(StreamWriterTest, RefusesWhatAStreamCannotHold) {
+  const BaseMesh base = Octahedron();
+  const Coefficients good = RandomCoefficients(base, 2, 5);
+  const auto refusal = [&](const Coefficients& c) {
+    return WriteRefinement(base, c.steps, c.levels).status().message();
+  };
+  ASSERT_EQ(refusal(good), "");
+
+  Coefficients c = good;
+  c.steps.pop_back();
+  EXPECT_THAT(refusal(c), HasSubstr("differ"));
+  c = good;
+  c.levels[1].normal.pop_back();
+  EXPECT_THAT(refusal(c), HasSubstr("normal set of level 2 has 47 coefficients, not 48"));
+  c = good;
+  c.levels[0].tangential.push_back(0);
+  EXPECT_THAT(refusal(c), HasSubstr("tangential set of level 1 has 25 coefficients, not 24"));
+  c = good;
+  c.steps[0].normal_step = 0.1f;
+  EXPECT_THAT(refusal(c), HasSubstr("not rounded"));
+  c.steps[0].normal_step = -0.5f;
+  EXPECT_THAT(refusal(c), HasSubstr("not rounded"));
+  c = good;
+  c.steps[0].normal_bias = 16;
+  EXPECT_THAT(refusal(c), HasSubstr("bias over 15"));
+  c = good;
+  c.levels[1].normal[7] = -kMaxMagnitude - 1;
+  EXPECT_THAT(refusal(c), HasSubstr("take a larger step"));
+  c.levels[1].normal[7] = std::numeric_limits<int32_t>::min();
+  EXPECT_THAT(refusal(c), HasSubstr("magnitude 2147483648"));
+  c = good;
+  c.levels[1].tangential[0] = 1;  // its step is 0
+  EXPECT_THAT(refusal(c), HasSubstr("but no step"));
+}
+
+TEST(BuildTopologiesTest, RefusesWhatCannotBeRefined) {
+  EXPECT_EQ(BuildTopologies(Octahedron(), 3).value().size(), 3u);
+  EXPECT_EQ(BuildTopologies(Octahedron(), 3).value()[2].num_edges(), 12u * 16);
+  EXPECT_EQ(BuildTopologies(Octahedron(), 13).status().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(BuildTopologies(Octahedron(), -1).status().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(BuildTopologies(Torus(20, 20), 12).status().code(), StatusCode::kInvalidArgument);  // 2e10 edges
+  BaseMesh fans = Octahedron();
+  fans.triangles.push_back({0, 1, 2});
+  EXPECT_EQ(BuildTopologies(fans, 1).status().code(), StatusCode::kInvalidData);
+}
 
 }  // namespace
 }  // namespace lacerta

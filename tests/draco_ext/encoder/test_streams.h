@@ -57,9 +57,12 @@ inline Coefficients RandomCoefficients(const BaseMesh& base, int num_levels, uin
     const LevelSteps steps = {RoundStep(0.01f / static_cast<float>(level)), level == 2 ? 0.0f : RoundStep(0.02f), 3,
                               static_cast<uint8_t>(level == 2 ? 0 : 5)};
     QuantizedLevel q;
+    // Of geometric distribution, without a function of the math library: golden streams depend on it.
     const auto draw = [&](double mean) {
-      const double magnitude = std::floor(-mean * std::log(1 - static_cast<double>(random()) / 4294967296.0));
-      return static_cast<int32_t>(random() & 1 ? magnitude : -magnitude);
+      const auto limit = static_cast<uint64_t>(4294967296.0 * mean / (1 + mean));
+      int32_t magnitude = 0;
+      while (random() < limit) ++magnitude;
+      return (random() & 1) != 0 ? magnitude : -magnitude;
     };
     for (uint32_t e = 0; e < t.num_edges(); ++e) {
       q.normal.push_back(draw(scale));

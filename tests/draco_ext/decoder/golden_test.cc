@@ -1,0 +1,115 @@
+// Streams of every released version decode to the same mesh for ever: tests/golden/v<version>/*.lac, with base,
+// coefficients and positions beside them as .json, from which tests/format/reference_decoder.py checks docs/format.md
+// too. LACERTA_REGENERATE_GOLDEN=1 writes the files of the current version anew; do that only before the version is
+// released.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "draco_ext/encoder/test_streams.h"
+#include "encoder/stream_writer.h"
+#include "lacerta/decoder.h"
+
+namespace lacerta {
+namespace {
+
+using ::lacerta::testing::Coefficients;
+using ::lacerta::testing::Octahedron;
+using ::lacerta::testing::RandomCoefficients;
+using ::lacerta::testing::Square;
+using ::lacerta::testing::Torus;
+
+struct Golden {
+  const char* name;
+  BaseMesh base;
+  int num_levels;
+  uint32_t seed;
+  double scale;  // of the coefficients of level 1
+};
+
+std::string PathOf(const Golden& golden, const char* extension) {
+  return std::string(LACERTA_GOLDEN_DIR) + "/v1/" + golden.name + extension;
+}
+
+// The lattice and the triangles of a base, or the coefficients of a level: rows of numbers as JSON.
+template <typename Row>
+std::string Rows(const std::vector<Row>& rows) {
+  std::ostringstream out;
+  out.precision(9);
+  for (size_t i = 0; i < rows.size(); ++i) {
+    out << (i == 0 ? "[[" : ",[") << rows[i][0] << ',' << rows[i][1] << ',' << rows[i][2] << ']';
+  }
+  return out.str() + "]";
+}
+
+std::string List(const std::vector<int32_t>& values) {
+  std::ostringstream out;
+  for (size_t i = 0; i < values.size(); ++i) out << (i == 0 ? "[" : ",") << values[i];
+  return out.str() + "]";
+}
+
+std::string Describe(const Golden& golden, const Coefficients& c, const std::vector<Vec3f>& positions) {
+  std::ostringstream out;
+  out.precision(9);
+  out << "{\"base\": {\"step\": " << golden.base.step << ",\n\"lattice\": " << Rows(golden.base.lattice)
+      << ",\n\"triangles\": " << Rows(golden.base.triangles) << "},\n\"levels\": [";
+  for (size_t i = 0; i < c.levels.size(); ++i) {
+    out << (i == 0 ? "" : ",") << "\n{\"normal\": " << List(c.levels[i].normal)
+        << ",\n\"tangential\": " << List(c.levels[i].tangential) << "}";
+  }
+  std::vector<std::array<float, 3>> rows;
+  for (const Vec3f& p : positions) rows.push_back({p.x, p.y, p.z});
+  out << "],\n\"positions\": " << Rows(rows) << "}\n";
+  return out.str();
+}
+
+std::string ReadFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  EXPECT_TRUE(in.good()) << "cannot read " << path;
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void WriteFile(const std::string& path, const std::string& content) {
+  std::ofstream out(path, std::ios::binary);
+  out << content;
+  ASSERT_TRUE(out.good()) << "cannot write " << path;
+}
+
+class GoldenTest : public ::testing::TestWithParam<Golden> {};
+
+TEST_P(GoldenTest, DecodesAndIsWrittenAgain) {
+  const Golden& golden = GetParam();
+  const Coefficients c = RandomCoefficients(golden.base, golden.num_levels, golden.seed, golden.scale);
+  const Bytes written = WriteRefinement(golden.base, c.steps, c.levels).value().bytes;
+  const RefinementResult again = DecodeRefinement(golden.base, written, {}).value();
+  if (std::getenv("LACERTA_REGENERATE_GOLDEN") != nullptr) {
+    WriteFile(PathOf(golden, ".lac"), std::string(written.begin(), written.end()));
+    WriteFile(PathOf(golden, ".json"), Describe(golden, c, again.mesh.positions));
+  }
+  const std::string file = ReadFile(PathOf(golden, ".lac"));
+  const Bytes stored(file.begin(), file.end());
+  EXPECT_EQ(stored, written) << "the writer of version 1 changed: streams in the field would not decode";
+  const RefinementResult decoded = DecodeRefinement(golden.base, stored, {}).value();
+  EXPECT_TRUE(decoded.refinement.ok()) << decoded.refinement.message();
+  EXPECT_EQ(decoded.level, golden.num_levels);
+  EXPECT_EQ(decoded.bytes_used, stored.size());
+  // Nine digits tell every binary32 apart.
+  EXPECT_EQ(Describe(golden, c, decoded.mesh.positions), ReadFile(PathOf(golden, ".json")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Version1, GoldenTest,
+                         ::testing::Values(Golden{"octahedron_4_levels", Octahedron(), 4, 21, 6.0},
+                                           Golden{"torus_regular_3_levels", Torus(6, 5), 3, 22, 2.0},
+                                           Golden{"square_border_4_levels", Square(), 4, 23, 3.0},
+                                           Golden{"octahedron_large_coefficients", Octahedron(), 2, 24, 40000.0},
+                                           Golden{"torus_mostly_zero", Torus(8, 6), 3, 25, 0.3}),
+                         [](const auto& golden) { return std::string(golden.param.name); });
+
+}  // namespace
+}  // namespace lacerta

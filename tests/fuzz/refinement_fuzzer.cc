@@ -1,0 +1,75 @@
+// The whole refinement decoder on bytes with sound checksums, cut into pieces. Checksums would stop a fuzzer at the
+// door, so header and segments are put together from its bytes: steps, biases, lengths and payloads are its own choice.
+#include "common/crc32.h"
+#include "common/stream_layout.h"
+#include "draco_ext/encoder/test_streams.h"
+#include "fuzz/fuzz_input.h"
+#include "lacerta/decoder.h"
+
+namespace {
+
+using lacerta::BaseMesh;
+using lacerta::Bytes;
+using lacerta::Span;
+
+void Put(uint32_t value, int num_bytes, Bytes* bytes) {
+  for (int i = 0; i < num_bytes; ++i) bytes->push_back(static_cast<uint8_t>(value >> 8 * i));
+}
+
+Bytes MakeStream(const BaseMesh& base, lacerta::fuzz::FuzzInput* input) {
+  Bytes bytes = {'L', 'A', 'C', lacerta::kRefinementVersion};
+  const int num_levels = 1 + input->Byte() % lacerta::kMaxLevels;
+  bytes.push_back(static_cast<uint8_t>(0x10 | num_levels));
+  bytes.push_back(static_cast<uint8_t>(base.lattice.size()));  // both below 128: varints of one byte
+  bytes.push_back(static_cast<uint8_t>(base.triangles.size()));
+  uint32_t step_bits;
+  static_assert(sizeof(step_bits) == sizeof(base.step));
+  std::copy_n(reinterpret_cast<const uint8_t*>(&base.step), sizeof(step_bits), reinterpret_cast<uint8_t*>(&step_bits));
+  Put(step_bits, 4, &bytes);
+  Put(BaseChecksum(base), 4, &bytes);
+  for (int level = 1; level <= num_levels; ++level) {
+    const uint16_t normal = input->Word16(), tangential = input->Word16();
+    Put(normal, 2, &bytes);
+    Put(tangential, 2, &bytes);
+    if (normal != 0 || tangential != 0) Put(input->Byte(), 1, &bytes);
+  }
+  lacerta::Crc32 crc;
+  crc.Add(bytes);
+  Put(crc.low16(), 2, &bytes);
+  for (int level = 1; level <= num_levels && !input->empty(); ++level) {
+    const Span<const uint8_t> payload = input->Take(input->Byte() & 0x7f);
+    Put(static_cast<uint32_t>(payload.size()), 1, &bytes);
+    Put(lacerta::SegmentChecksum(level, payload), 2, &bytes);
+    bytes.insert(bytes.end(), payload.begin(), payload.end());
+  }
+  return bytes;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  lacerta::fuzz::FuzzInput input(data, size);
+  const int choice = input.Byte();
+  const BaseMesh base = choice % 3 == 0   ? lacerta::testing::Octahedron()
+                        : choice % 3 == 1 ? lacerta::testing::Torus(5, 4)
+                                          : lacerta::testing::Square();
+  lacerta::RefinementOptions options;
+  options.limits = {3000, 6000};
+  const size_t cut = 1 + input.Byte();
+  const Bytes stream = MakeStream(base, &input);
+
+  lacerta::ProgressiveDecoder decoder = lacerta::ProgressiveDecoder::Create(base, options).value();
+  for (size_t begin = 0; begin < stream.size(); begin += cut) {
+    const Span<const uint8_t> rest = Span<const uint8_t>(stream).Subspan(begin);
+    const bool ok = decoder.Append(rest.First(std::min(cut, rest.size()))).ok();
+    FUZZ_CHECK(ok == decoder.refinement().ok());
+    FUZZ_CHECK(decoder.bytes_used() <= stream.size());
+    FUZZ_CHECK(decoder.mesh().positions.size() <= options.limits.max_vertices);
+  }
+  const lacerta::RefinementResult whole = DecodeRefinement(base, stream, options).value();
+  FUZZ_CHECK(whole.level == decoder.level());
+  FUZZ_CHECK(whole.mesh.positions == decoder.mesh().positions);
+  FUZZ_CHECK(whole.refinement.ok() == decoder.refinement().ok());
+  FUZZ_CHECK(MeshAtLevel(whole.mesh, whole.level).ok());
+  return 0;
+}

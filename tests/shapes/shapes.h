@@ -1,0 +1,71 @@
+// Synthetic meshes, named for what they exercise. All are the same on every run and machine, up to the last bit of sin
+// and cos.
+#ifndef LACERTA_TESTS_SHAPES_SHAPES_H_
+#define LACERTA_TESTS_SHAPES_SHAPES_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lacerta/mesh.h"
+
+namespace lacerta::shapes {
+
+// Smooth and closed.
+
+// Sphere around the origin, vertices on it: an icosahedron split `levels` times 1 to 4. 20 * 4^levels faces. Genus 0.
+TriangleMesh Icosphere(int levels, float radius = 1.0f);
+// Torus around the z axis: 2 * nu * nv faces, nu >= 3 along the ring and nv >= 3 around the tube. Genus 1.
+TriangleMesh Torus(int nu, int nv, float ring_radius = 1.0f, float tube_radius = 0.4f);
+// Icosphere with smooth bumps up to `amplitude` high and, on top, vertex noise up to `noise`, both relative to the
+// radius 1: what a scan looks like. Genus 0.
+TriangleMesh BumpySphere(int levels, float amplitude = 0.1f, float noise = 0.0f);
+// Icosphere drawn out into `num_spikes` thin spikes of height `height`: hard to simplify and to parametrize. Genus 0.
+TriangleMesh SpikySphere(int levels, int num_spikes = 12, float height = 1.0f);
+
+// Closed with creases: surfaces of unit cubes, each square split into n * n, each of them into two triangles.
+
+// The unit cube [0, 1]^3. 12 * n^2 faces. Genus 0.
+TriangleMesh CreasedBox(int n);
+// A plate 5 x 3 x 1 with two square holes. Genus 2.
+TriangleMesh TwoHoledPlate(int n);
+// The unit cube squeezed to `thickness` along z: two sheets close together.
+TriangleMesh ThinPlate(int n, float thickness = 0.01f);
+
+// With a border.
+
+// Graph of height * sin(pi x) * sin(pi y) over the unit square, nx * ny cells. 2 * nx * ny faces, one border.
+TriangleMesh GridWithBorder(int nx, int ny, float height = 0.0f);
+// Icosphere without the faces around its first vertex: one border of five edges.
+TriangleMesh PuncturedSphere(int levels);
+
+// Not manifold or otherwise in need of repair.
+
+// Two tetrahedra that share one vertex and nothing else: two fans at one vertex.
+TriangleMesh Pinched();
+// Three triangles at one edge.
+TriangleMesh NonManifoldEdge();
+// Icosphere of which every third face is turned inside out.
+TriangleMesh Misoriented(int levels);
+// Icosphere with added faces that have a repeated vertex, no area, or the corners of another face, and with a vertex
+// that no face uses.
+TriangleMesh WithDegenerateFaces(int levels);
+// Icosphere of which every face has its own three vertices, as STL files do.
+TriangleMesh TriangleSoup(int levels);
+
+// A shape and what is true of it.
+struct NamedShape {
+  std::string name;
+  TriangleMesh mesh;
+  bool manifold = true;  // every edge at most two faces, every vertex one fan
+  bool oriented = true;  // neighbours run through their shared edge in opposite directions
+  int num_borders = 0;   // closed polygons; of manifold shapes
+  int genus = 0;         // of manifold shapes
+};
+
+// One of each of the above, a few hundred to a few thousand faces.
+std::vector<NamedShape> AllShapes();
+
+}  // namespace lacerta::shapes
+
+#endif  // LACERTA_TESTS_SHAPES_SHAPES_H_
