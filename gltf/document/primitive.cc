@@ -83,7 +83,7 @@ StatusOr<Primitive> ReadPlain(const GltfDocument& document, const Json& primitiv
   return result;
 }
 
-StatusOr<Primitive> ReadDraco(const GltfDocument& document, const Json& extension) {
+StatusOr<Primitive> ReadDraco(const GltfDocument& document, const Json& extension, const DecodeLimits& limits) {
   LACERTA_ASSIGN_OR_RETURN(const uint64_t view, GetIndex(extension, "bufferView"));
   LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(document, view));
   const Json* attributes = Find(extension, "attributes");
@@ -97,7 +97,7 @@ StatusOr<Primitive> ReadDraco(const GltfDocument& document, const Json& extensio
     }
     ids.push_back({name, static_cast<uint32_t>(*index)});
   }
-  StatusOr<Primitive> result = DecodeDracoPrimitive(bytes, ids);
+  StatusOr<Primitive> result = DecodeDracoPrimitive(bytes, ids, limits);
   if (!result.ok()) return result.status().WithContext("bufferView " + std::to_string(view));
   return result;
 }
@@ -124,12 +124,12 @@ const Attribute* Primitive::Find(const std::string& name) const {
   return found == attributes.end() ? nullptr : &*found;
 }
 
-StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& primitive) {
+StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& primitive, const DecodeLimits& limits) {
   LACERTA_ASSIGN_OR_RETURN(const uint64_t mode, GetIndex(primitive, "mode", kTriangles));
   if (mode < kTriangles || mode > kTriangleFan) return Unsupported("holds points or lines, no triangles");
   const Json* extensions = Find(primitive, "extensions");
   const Json* draco = extensions == nullptr ? nullptr : Find(*extensions, "KHR_draco_mesh_compression");
-  StatusOr<Primitive> result = draco != nullptr ? ReadDraco(document, *draco) : ReadPlain(document, primitive, mode);
+  StatusOr<Primitive> result = draco != nullptr ? ReadDraco(document, *draco, limits) : ReadPlain(document, primitive, mode);
   if (!result.ok()) return result.status();
   LACERTA_RETURN_IF_ERROR(CheckPositions(result.value()));
   std::vector<Attribute>& attributes = result.value().attributes;

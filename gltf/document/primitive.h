@@ -7,6 +7,7 @@
 
 #include "document/accessor.h"
 #include "document/gltf_document.h"
+#include "lacerta/decoder.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
 
@@ -28,7 +29,7 @@ struct Primitive {
 // Reads an element of meshes[].primitives: triangles, strips and fans, core accessors or KHR_draco_mesh_compression.
 // Positions are finite and indices in range afterwards. Fails with kUnsupported for points and lines, kInvalidData for
 // what breaks the format; messages name accessor and index.
-StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& primitive);
+StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& primitive, const DecodeLimits& limits);
 
 // Positions (as float, normalized integers scaled) and triangles alone.
 TriangleMesh Surface(const Primitive& primitive);

@@ -83,7 +83,7 @@ StatusOr<NewGeometry> DracoFallback(const EncodedMesh& encoded, uint64_t data_bu
   const uint64_t length = encoded.part_sizes[0];
   const Span<const uint8_t> base = Span<const uint8_t>(encoded.stream).First(static_cast<size_t>(length));
   LACERTA_ASSIGN_OR_RETURN(const uint32_t id, DracoPositionId(base));
-  LACERTA_ASSIGN_OR_RETURN(const Primitive primitive, DecodeDracoPrimitive(base, {{"POSITION", id}}));
+  LACERTA_ASSIGN_OR_RETURN(const Primitive primitive, DecodeDracoPrimitive(base, {{"POSITION", id}}, DecodeLimits{}));
   NewGeometry geometry = DescribedGeometry(Surface(primitive));
   const uint64_t view = AddBufferView(data_buffer, offset, length, document);
   geometry.extensions[kDracoName] = {{"bufferView", view}, {"attributes", {{"POSITION", id}}}};

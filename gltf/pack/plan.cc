@@ -61,7 +61,7 @@ uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primi
 Status ReadSource(const GltfDocument& document, const Json& json, Source* source) {
   source->plan.report.reason = ReasonToKeep(document, json);
   if (!source->plan.report.reason.empty()) return Status();
-  StatusOr<Primitive> primitive = ReadPrimitive(document, json);
+  StatusOr<Primitive> primitive = ReadPrimitive(document, json, DecodeLimits{});
   if (primitive.status().code() == StatusCode::kUnsupported) {
     source->plan.report.reason = primitive.status().message();
     return Status();

@@ -130,7 +130,7 @@ StatusOr<TriangleMesh> ReadMesh(const GltfDocument& document, const StatusOr<Pro
       if (!surface.value().note.empty()) notes->push_back(PlaceName(document, place) + ": " + surface.value().note);
       part = std::move(surface.value().surface);
     } else {
-      const StatusOr<Primitive> read = ReadPrimitive(document, primitive);
+      const StatusOr<Primitive> read = ReadPrimitive(document, primitive, options.limits);
       if (read.status().code() == StatusCode::kUnsupported) {
         notes->push_back(PlaceName(document, place) + ": left out, it " + read.status().message());
         continue;

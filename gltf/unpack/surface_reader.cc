@@ -139,7 +139,7 @@ StatusOr<ProgressiveSurface> ReadSurface(const GltfDocument& document, const Sta
   StatusOr<ProgressiveSurface> surface = ReadStream(document, progressive, primitive, options);
   if (!surface.ok()) {
     if (!HasFallback(document, primitive)) return surface.status();
-    StatusOr<Primitive> fallback = ReadPrimitive(document, primitive);
+    StatusOr<Primitive> fallback = ReadPrimitive(document, primitive, options.limits);
     if (!fallback.ok()) {
       return fallback.status().WithContext(surface.status().message() + "; its fallback cannot be used either");
     }

@@ -95,7 +95,7 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
       ReplaceGeometry(places, PlainGeometry(surface.value().surface, surface.value().smooth_normals, &document), &pool,
                       &document);
     } else if (PrimitiveExtension(primitive, kDracoName) != nullptr) {
-      StatusOr<Primitive> decoded = ReadPrimitive(document, primitive);
+      StatusOr<Primitive> decoded = ReadPrimitive(document, primitive, options.limits);
       if (!decoded.ok()) return decoded.status().WithContext(PlaceName(document, places[0]));
       RestoreUnits(&decoded.value());
       ReplaceGeometry(places, PlainGeometry(decoded.value(), &document), &pool, &document);

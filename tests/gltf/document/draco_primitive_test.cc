@@ -90,10 +90,10 @@ TEST(DracoPrimitive, DecodingSurvivesTruncationAndNamesAttributes) {
   const Bytes& bytes = encoded.value().bytes;
   for (size_t length = 0; length + 1 < bytes.size(); ++length) {
     const Bytes prefix(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length));
-    const auto decoded = DecodeDracoPrimitive(prefix, encoded.value().ids);
+    const auto decoded = DecodeDracoPrimitive(prefix, encoded.value().ids, {});
     EXPECT_FALSE(decoded.ok() && length < bytes.size() / 2) << length;
   }
-  EXPECT_THAT(DecodeDracoPrimitive(bytes, {{"COLOR_0", 77}}).status().message(),
+  EXPECT_THAT(DecodeDracoPrimitive(bytes, {{"COLOR_0", 77}}, {}).status().message(),
               AllOf(::testing::HasSubstr("77"), ::testing::HasSubstr("COLOR_0")));
 }
 
