@@ -10,8 +10,7 @@ namespace lacerta {
 namespace {
 
 constexpr uint64_t kTriangles = 4;
-constexpr uint64_t kTriangleStrip = 5;
-constexpr uint64_t kTriangleFan = 6;
+constexpr uint64_t kTriangleFan = 6;  // 5 is a strip
 
 std::vector<Triangle> Assemble(const std::vector<uint32_t>& corners, uint64_t mode) {
   std::vector<Triangle> triangles;
@@ -129,7 +128,8 @@ StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& prim
   if (mode < kTriangles || mode > kTriangleFan) return Unsupported("holds points or lines, no triangles");
   const Json* extensions = Find(primitive, "extensions");
   const Json* draco = extensions == nullptr ? nullptr : Find(*extensions, "KHR_draco_mesh_compression");
-  StatusOr<Primitive> result = draco != nullptr ? ReadDraco(document, *draco, limits) : ReadPlain(document, primitive, mode);
+  StatusOr<Primitive> result =
+      draco != nullptr ? ReadDraco(document, *draco, limits) : ReadPlain(document, primitive, mode);
   if (!result.ok()) return result.status();
   LACERTA_RETURN_IF_ERROR(CheckPositions(result.value()));
   std::vector<Attribute>& attributes = result.value().attributes;
