@@ -2,7 +2,7 @@
 // models").
 //
 // Two estimates follow the bits, one quickly and one slowly, and the probability in use is their mean. Both begin as
-// running averages (the n-th bit weighs about 1 / (n + 1)) until their own lower bound of the weight is reached, so
+// running averages (the n-th bit weighs 1 / (n + 1)) until their own lower bound of the weight is reached, so
 // that a model is useful after a handful of bits: sets of a few hundred coefficients are the rule at coarse levels.
 #ifndef LACERTA_COMMON_BIT_MODEL_H_
 #define LACERTA_COMMON_BIT_MODEL_H_
@@ -37,10 +37,10 @@ class BitModel {
  private:
   static constexpr uint32_t kFastCount = 24, kSlowCount = 160;
 
-  // kWeight[n] = floor(65536 / (n + 1.6)).
+  // kWeight[n] = floor(65536 / (n + 2)).
   static constexpr std::array<uint16_t, kSlowCount + 1> MakeWeights() {
     std::array<uint16_t, kSlowCount + 1> weights{};
-    for (uint32_t n = 0; n <= kSlowCount; ++n) weights[n] = static_cast<uint16_t>(655360 / (10 * n + 16));
+    for (uint32_t n = 0; n <= kSlowCount; ++n) weights[n] = static_cast<uint16_t>(65536 / (n + 2));
     return weights;
   }
   static const std::array<uint16_t, kSlowCount + 1> kWeight;

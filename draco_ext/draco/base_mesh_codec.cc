@@ -122,6 +122,15 @@ bool IsRenumbering(const BaseMesh& base, const BaseMesh& coded, const std::vecto
   return before == after;
 }
 
+// Puts the lattice's place in space into a stream of its integers.
+Status PlaceOnLattice(const IntegerMesh& integers, float step, Bytes* stream) {
+  QuantizationGrid grid;
+  for (int c = 0; c < 3; ++c) grid.origin[c] = step * static_cast<float>(integers.origin[static_cast<size_t>(c)]);
+  grid.range = RangeForStep(step, integers.bits);
+  if (!std::isfinite(grid.range)) return InvalidData("step times extent of the base lattice does not fit a float");
+  return SetQuantizationGrid(grid, stream);
+}
+
 }  // namespace
 
 float ShortStep(float step) {
@@ -133,13 +142,10 @@ float ShortStep(float step) {
 StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
   LACERTA_ASSIGN_OR_RETURN(const IntegerMesh integers, ToIntegerMesh(base));
   LACERTA_ASSIGN_OR_RETURN(StockAttempt attempt, SmallestEdgebreakerStream(integers.mesh, integers.bits));
-  QuantizationGrid grid;
-  for (int c = 0; c < 3; ++c) grid.origin[c] = base.step * static_cast<float>(integers.origin[static_cast<size_t>(c)]);
-  grid.range = RangeForStep(base.step, integers.bits);
-  if (!std::isfinite(grid.range)) return InvalidData("step times extent of the base lattice does not fit a float");
   CodedBase result;
-  result.stream = std::move(attempt.stream);
-  LACERTA_RETURN_IF_ERROR(SetQuantizationGrid(grid, &result.stream));
+  result.stream = attempt.stream;
+  LACERTA_RETURN_IF_ERROR(PlaceOnLattice(integers, base.step, &result.stream));
+  result.traversal = {attempt.settings, attempt.first_triangle, attempt.first_corner, base.triangles};
 
   LACERTA_ASSIGN_OR_RETURN(const DecodedBase decoded, DecodeBaseMesh(result.stream, kNoDecodeLimits));
   if (decoded.mesh.positions.size() != base.lattice.size() || decoded.mesh.triangles.size() != base.triangles.size()) {
@@ -160,6 +166,25 @@ StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
     return InvalidData("Draco changed the base mesh; keep more vertices in it");
   }
   return result;
+}
+
+StatusOr<Bytes> RecodeBaseMesh(const CodedBase& first, const BaseMesh& moved) {
+  if (moved.lattice.size() != first.mesh.lattice.size() || moved.triangles != first.mesh.triangles) {
+    return InvalidArgument("the base to code again has another connectivity");
+  }
+  BaseMesh as_given{moved.step, std::vector<std::array<int32_t, 3>>(moved.lattice.size()), first.traversal.triangles};
+  for (size_t v = 0; v < moved.lattice.size(); ++v) as_given.lattice[first.vertex_map[v]] = moved.lattice[v];
+  LACERTA_ASSIGN_OR_RETURN(const IntegerMesh integers, ToIntegerMesh(as_given));
+  const StockAttempt attempt{first.traversal.settings, first.traversal.first_triangle, first.traversal.first_corner, {}};
+  const auto mesh = ToDracoMesh(StartingAsIn(attempt, integers.mesh));
+  LACERTA_ASSIGN_OR_RETURN(Bytes stream, EncodeIntegerPositions(*mesh, integers.bits, attempt.settings));
+  LACERTA_RETURN_IF_ERROR(PlaceOnLattice(integers, moved.step, &stream));
+  LACERTA_ASSIGN_OR_RETURN(const DecodedBase decoded, DecodeBaseMesh(stream, kNoDecodeLimits));
+  LACERTA_ASSIGN_OR_RETURN(const BaseMesh lattice, BaseMeshFromPositions(decoded.mesh, moved.step));
+  if (lattice.triangles != moved.triangles || lattice.lattice != moved.lattice) {
+    return InternalError("Draco coded the moved base mesh in another order");
+  }
+  return stream;
 }
 
 StatusOr<DecodedBase> DecodeBaseMesh(Span<const uint8_t> stream, const DecodeLimits& limits) {

@@ -6,11 +6,20 @@
 #include <cstdint>
 #include <vector>
 
+#include "draco/stock_stream.h"
 #include "lacerta/decoder.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
 
 namespace lacerta {
+
+// The way in which Draco walked over a base mesh; it fixes the order of the vertices and triangles that come out.
+struct BaseTraversal {
+  StockSettings settings;
+  uint32_t first_triangle = 0;
+  uint32_t first_corner = 0;
+  std::vector<Triangle> triangles;  // #F0, as they were given to EncodeBaseMesh
+};
 
 // A coded base and what every decoder gets from it. Draco renumbers vertices and triangles and rotates triangles, so
 // all that follows must be computed on `mesh`.
@@ -18,6 +27,7 @@ struct CodedBase {
   Bytes stream;                      // edgebreaker, bitstream version 2.2
   BaseMesh mesh;                     // in the decoder's order; step as in the input
   std::vector<uint32_t> vertex_map;  // #V0, coded vertex -> input vertex
+  BaseTraversal traversal;
 };
 
 // Codes a base mesh without loss in the fewest bytes found among Draco's settings and starting triangles;
@@ -27,6 +37,10 @@ struct CodedBase {
 // lattice values of 2^24 or more or spanning more than 24 bits, a base that is not an oriented manifold
 // (BuildTopology), and where Draco does not carry it unchanged.
 StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base);
+
+// Codes `moved`, which is first.mesh with other lattice points or another step, so that a decoder gets its vertices and
+// triangles in this very order. Fails as EncodeBaseMesh does.
+StatusOr<Bytes> RecodeBaseMesh(const CodedBase& first, const BaseMesh& moved);
 
 // The largest float with an 8 bit significand that is not greater than `step`, a positive normal float.
 float ShortStep(float step);

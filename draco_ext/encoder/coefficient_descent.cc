@@ -8,6 +8,7 @@
 #include "common/local_frame.h"
 #include "decoder/synthesis.h"
 #include "encoder/bit_cost.h"
+#include "encoder/quantizer.h"
 
 namespace lacerta {
 namespace {
@@ -15,13 +16,6 @@ namespace {
 Vec3f LatticePoint(const BaseMesh& base, uint32_t v) {
   const auto& q = base.lattice[v];
   return Vec3f{static_cast<float>(q[0]), static_cast<float>(q[1]), static_cast<float>(q[2])} * base.step;
-}
-
-int32_t RoundToStep(float value, float step) {
-  if (!(step > 0)) return 0;
-  const float q = std::nearbyint(value / step);
-  constexpr float kLimit = kMaxMagnitude;
-  return static_cast<int32_t>(std::clamp(q, -kLimit, kLimit));
 }
 
 // How a vertex moves the level that it is looked at on: itself with weight 1 and the midpoints of the next level.

@@ -180,7 +180,7 @@ class Model:
 
     def update(self, bit):
         def move(estimate, n):
-            weight = 655360 // (10 * n + 16)
+            weight = 65536 // (n + 2)
             return estimate + (((1 << 24) - estimate) * weight >> 16) if bit else estimate - (estimate * weight >> 16)
         self.fast, self.slow = move(self.fast, min(self.count, 24)), move(self.slow, min(self.count, 160))
         self.count = min(self.count + 1, 160)

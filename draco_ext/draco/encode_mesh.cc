@@ -1,0 +1,110 @@
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "draco/custom_form.h"
+#include "draco/rate_control.h"
+#include "draco/zero_level_search.h"
+#include "lacerta/clean.h"
+#include "lacerta/codec.h"
+#include "lacerta/decoder.h"
+#include "lacerta/surface_distance.h"
+#include "remesh/decimate.h"
+#include "remesh/input_surface.h"
+
+namespace lacerta {
+namespace {
+
+// Ok where the remesher of this version can take the mesh, or why not.
+Status CheckRemeshable(const TriangleMesh& mesh) {
+  constexpr size_t kFewestTriangles = 500;
+  if (mesh.triangles.size() < kFewestTriangles) return Unsupported("too few triangles to be worth remeshing");
+  const StatusOr<Topology> topology = BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles);
+  if (!topology.ok()) return Unsupported("not an oriented manifold: " + topology.status().message());
+  for (uint32_t v = 0; v < topology.value().num_vertices; ++v) {
+    if (topology.value().on_border[v]) return Unsupported("the surface has a border (at vertex " + std::to_string(v) + ")");
+  }
+  return Status();
+}
+
+// Measured error of every level that `stream` decodes to.
+Status ReportLevels(const SurfaceDistanceMeter& meter, const CodedStream& stream, EncodeReport* report) {
+  uint64_t bytes = 0;
+  for (int level = 0; level <= stream.decoded.num_levels; ++level) {
+    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, MeshAtLevel(stream.decoded, level));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter.Measure(mesh));
+    bytes += stream.part_sizes[static_cast<size_t>(level)];
+    report->levels.push_back({mesh.positions.size(), mesh.triangles.size(), bytes, distance.Rms(),
+                              Psnr(distance.Rms(), meter.diagonal())});
+  }
+  return Status();
+}
+
+EncodedMesh FromZeroLevel(ZeroLevelStream zero, EncodeReport report, std::string reason) {
+  report.reason = std::move(reason);
+  report.levels = {{zero.mesh.positions.size(), zero.mesh.triangles.size(), zero.stream.size(), zero.distance, zero.psnr}};
+  const size_t size = zero.stream.size();
+  return {std::move(zero.stream), {size}, std::move(report)};
+}
+
+StatusOr<EncodedMesh> FromRefinement(const SurfaceDistanceMeter& meter, const MeasuredStream& coded, EncodeReport report) {
+  report.progressive = true;
+  report.normal_share = coded.normal_share;
+  report.remesh_psnr = coded.remesh_psnr;
+  if (!coded.meets_target) report.reason = "the target is out of reach; this is the nearest found";
+  LACERTA_RETURN_IF_ERROR(ReportLevels(meter, coded.stream, &report));
+  EncodedMesh result;
+  result.stream = coded.stream.base;
+  result.stream.insert(result.stream.end(), coded.stream.refinement.begin(), coded.stream.refinement.end());
+  result.part_sizes = coded.stream.part_sizes;
+  result.report = std::move(report);
+  return result;
+}
+
+// Draco form to the form asked for: the custom form only adds to the base section.
+StatusOr<EncodedMesh> InForm(StreamForm form, EncodedMesh mesh) {
+  if (form == StreamForm::kDraco) return mesh;
+  const size_t base_size = mesh.part_sizes.front();
+  const Span<const uint8_t> stream(mesh.stream);
+  Bytes custom = WriteCustomForm({stream.First(base_size), stream.Subspan(base_size)});
+  const size_t added = custom.size() - mesh.stream.size();
+  mesh.stream = std::move(custom);
+  mesh.part_sizes.front() += added;
+  for (LevelReport& level : mesh.report.levels) level.bytes += added;
+  return mesh;
+}
+
+}  // namespace
+
+StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions& options) {
+  const auto progress = [&](double share, const char* stage) {
+    if (options.progress) options.progress(share, stage);
+  };
+  LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(input));
+  const TriangleMesh& mesh = cleaned.mesh;
+  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget target, ResolveTarget(options.target, mesh.positions.size()));
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(mesh));
+  EncodeReport report;
+  report.clean = cleaned.report;
+  report.input_vertices = mesh.positions.size();
+  report.input_triangles = mesh.triangles.size();
+  report.diagonal = meter.diagonal();
+
+  if (const Status why_not = CheckRemeshable(mesh); !why_not.ok()) {
+    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, CodeZeroLevel(mesh, meter, target));
+    LACERTA_ASSIGN_OR_RETURN(EncodedMesh result, InForm(options.form, FromZeroLevel(std::move(zero), std::move(report), why_not.message())));
+    return result;
+  }
+  progress(0.0, "simplifying");
+  const CollapseHistory history = Decimate(mesh, DecimateOptions());
+  const InputSurface surface(mesh);
+  LACERTA_ASSIGN_OR_RETURN(const MeasuredStream coded, CodeAtTarget(surface, history, meter, target, options.mode, options.progress));
+  progress(0.95, "comparing with Draco");
+  LACERTA_ASSIGN_OR_RETURN(std::optional<ZeroLevelStream> simpler, SimplerIfBetter(mesh, history, meter, target, coded));
+  if (simpler) return InForm(options.form, FromZeroLevel(std::move(*simpler), std::move(report), "a simplified mesh in stock Draco form is smaller"));
+  LACERTA_ASSIGN_OR_RETURN(EncodedMesh result, FromRefinement(meter, coded, std::move(report)));
+  progress(1.0, "done");
+  return InForm(options.form, std::move(result));
+}
+
+}  // namespace lacerta

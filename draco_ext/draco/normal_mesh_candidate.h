@@ -1,0 +1,59 @@
+// One way to code a surface progressively: a base mesh of a certain size, the normal mesh over it, and the streams that come
+// of it at any slope of the rate-distortion curve.
+#ifndef LACERTA_DRACO_NORMAL_MESH_CANDIDATE_H_
+#define LACERTA_DRACO_NORMAL_MESH_CANDIDATE_H_
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "draco/base_mesh_codec.h"
+#include "encoder/coefficient_descent.h"
+#include "encoder/surface_target.h"
+#include "lacerta/codec.h"
+#include "remesh/collapse_history.h"
+#include "remesh/input_surface.h"
+
+namespace lacerta {
+
+// A coded surface as bytes and as the mesh that a decoder makes of them.
+struct CodedStream {
+  Bytes base;                        // the base section
+  Bytes refinement;
+  std::vector<size_t> part_sizes;    // of the base section, then as in RefinementBytes
+  SemiRegularMesh decoded;
+  std::vector<Triangle> triangles;   // of the finest level
+
+  size_t size() const { return base.size() + refinement.size(); }
+  TriangleMesh FinestMesh() const { return {decoded.positions, triangles}; }
+};
+
+class NormalMeshCandidate {
+ public:
+  // The base mesh is the one that `history` has at `num_base_vertices` vertices, or its coarsest if that is larger. There are
+  // as many levels as it takes to have about as many vertices as the input.
+  // surface and history must outlive the candidate. Fails where Draco cannot carry the base.
+  static StatusOr<NormalMeshCandidate> Create(const InputSurface& surface, const CollapseHistory& history,
+                                              uint32_t num_base_vertices);
+
+  // Codes at a slope of the rate-distortion curve: lambda in squared model units per bit, > 0. A larger one gives fewer bytes.
+  StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const;
+
+  uint32_t num_base_vertices() const { return normal_mesh_.mesh.num_base_vertices; }
+  const NormalMesh& normal_mesh() const { return normal_mesh_; }
+  // The remesh as a plain mesh, before anything is quantized.
+  TriangleMesh RemeshedSurface() const;
+
+ private:
+  NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);
+  StatusOr<CodedSurface> CodeSurface(double lambda, EncodeMode mode) const;
+
+  CodedBase base_;  // at a nominal step: fixes the order
+  NormalMesh normal_mesh_;
+  SurfaceTarget target_;
+  std::vector<double> detail_scales_;
+};
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DRACO_NORMAL_MESH_CANDIDATE_H_

@@ -1,0 +1,57 @@
+#include "encoder/step_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/local_frame.h"
+
+namespace lacerta {
+namespace {
+
+constexpr double kSlopeShare = 0.15;       // lambda / (step^2 / N) where detail ends
+constexpr double kStepRatio = 1.4;         // between the steps of two levels below that
+constexpr double kActiveScale = 0.5;       // a level carries detail when its scale exceeds this share of its step
+constexpr double kTangentialRatio = 2.0;   // of the tangential to the normal step
+constexpr double kBaseVertices = 2.5e4;    // the base lattice is as fine as the steps of a level of so many vertices
+
+double BalancedStep(double lambda, double num_vertices) { return std::sqrt(lambda * num_vertices / kSlopeShare); }
+
+}  // namespace
+
+std::vector<double> DetailScales(const SurfaceTarget& target) {
+  std::vector<double> scales;
+  for (int level = 1; level <= target.num_levels(); ++level) {
+    const Topology& coarse = target.topologies[level - 1];
+    const std::vector<Vec3f> positions(target.points.begin(), target.points.begin() + coarse.num_vertices);
+    const std::vector<Vec3f> predicted = PredictMidpoints(coarse, target.stencils, positions);
+    const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
+    double sum = 0;
+    for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
+      const double normal = Dot(target.points[coarse.num_vertices + e] - predicted[e], frames[e].normal);
+      sum += normal * normal;
+    }
+    scales.push_back(std::sqrt(sum / coarse.num_edges()));
+  }
+  return scales;
+}
+
+std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, const std::vector<double>& detail_scales, double lambda) {
+  const int num_levels = target.num_levels();
+  std::vector<double> steps(num_levels);
+  int active = 0;
+  for (int i = 0; i < num_levels; ++i) {
+    steps[i] = BalancedStep(lambda, target.topologies[i + 1].num_vertices);
+    if (detail_scales[i] > kActiveScale * steps[i]) active = i;
+  }
+  for (int i = active - 1; i >= 0; --i) steps[i] = steps[i + 1] / kStepRatio;
+  std::vector<LevelSteps> result(num_levels);
+  for (int i = 0; i < num_levels; ++i) {
+    result[i].normal_step = RoundStep(static_cast<float>(steps[i]));
+    result[i].tangential_step = RoundStep(static_cast<float>(kTangentialRatio * steps[i]));
+  }
+  return result;
+}
+
+double BaseStepForSlope(double lambda) { return BalancedStep(lambda, kBaseVertices); }
+
+}  // namespace lacerta
