@@ -1,0 +1,47 @@
+// The values behind a glTF accessor, with every range checked.
+#ifndef LACERTA_DOCUMENT_ACCESSOR_H_
+#define LACERTA_DOCUMENT_ACCESSOR_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "document/gltf_document.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+enum class ComponentType : uint32_t {
+  kInt8 = 5120,
+  kUint8 = 5121,
+  kInt16 = 5122,
+  kUint16 = 5123,
+  kUint32 = 5125,
+  kFloat = 5126
+};
+
+size_t ComponentSize(ComponentType type);  // bytes
+
+// Values of an accessor, densely packed: value i starts at i * components * ComponentSize(type).
+struct AccessorData {
+  ComponentType type = ComponentType::kFloat;
+  uint32_t components = 1;  // 1..4: SCALAR, VEC2, VEC3, VEC4
+  bool normalized = false;
+  uint64_t count = 0;
+  Bytes bytes;
+
+  // Component as a number; normalized integers are scaled to [0, 1] or [-1, 1] as glTF 2.0 section 3.6.2 says.
+  float Float(uint64_t element, uint32_t component) const;
+  uint32_t Uint(uint64_t element, uint32_t component) const;  // of an unsigned integer type
+};
+
+AccessorData MakeFloatAccessor(const std::vector<Vec3f>& values);
+// 16 bits where `num_vertices` allows it, else 32.
+AccessorData MakeIndexAccessor(const std::vector<Triangle>& triangles, uint64_t num_vertices);
+
+// Reads accessors[index]: strides, sparse substitution and normalization; matrices are refused with kUnsupported, as is
+// an accessor without any data. Messages begin with "accessor N".
+StatusOr<AccessorData> ReadAccessor(const GltfDocument& document, uint64_t index);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DOCUMENT_ACCESSOR_H_

@@ -1,0 +1,232 @@
+#include "document/buffer_edit.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace lacerta {
+namespace {
+
+constexpr uint64_t kAlignment = 4;
+
+// Calls visit(value) on every reference to a bufferView: by the key "bufferView" wherever it is, and "data" of our
+// extension.
+void VisitViewReferences(Json& json, const std::function<void(Json&)>& visit) {
+  if (json.is_array()) {
+    for (Json& element : json) VisitViewReferences(element, visit);
+  } else if (json.is_object()) {
+    for (const auto& [key, value] : json.items()) {
+      if (key == "extras") continue;
+      if (key == "bufferView") {
+        visit(value);
+      } else if (Json* data = key == "LACERTA_mesh_progressive" ? Find(value, "data") : nullptr; data != nullptr) {
+        visit(*data);
+      } else {
+        VisitViewReferences(value, visit);
+      }
+    }
+  }
+}
+
+// Extensions known to refer to bufferViews by the key "bufferView" or not at all.
+bool MayRenumberViews(const GltfDocument& document) {
+  const Json* used = Find(document.json, "extensionsUsed");
+  if (used == nullptr || !used->is_array()) return true;
+  return std::all_of(used->begin(), used->end(), [](const Json& entry) {
+    const std::string name = AsString(&entry);
+    for (const char* prefix : {"KHR_", "LACERTA_", "EXT_texture_", "EXT_mesh_gpu_instancing", "EXT_lights_", "MSFT_"}) {
+      if (name.rfind(prefix, 0) == 0) return true;
+    }
+    return false;
+  });
+}
+
+const char* TypeName(uint32_t components) {
+  constexpr const char* kNames[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+  return kNames[components - 1];
+}
+
+void AddBounds(const AccessorData& data, Json* accessor) {
+  Json min = Json::array();
+  Json max = Json::array();
+  for (uint32_t c = 0; c < data.components && data.count > 0; ++c) {
+    float low = data.Float(0, c);
+    float high = low;
+    for (uint64_t i = 1; i < data.count; ++i) {
+      low = std::min(low, data.Float(i, c));
+      high = std::max(high, data.Float(i, c));
+    }
+    min.push_back(low);
+    max.push_back(high);
+  }
+  (*accessor)["min"] = std::move(min);
+  (*accessor)["max"] = std::move(max);
+}
+
+void ShrinkView(uint64_t index, GltfDocument* document) {
+  Json& view = document->json["bufferViews"][static_cast<size_t>(index)];
+  const std::optional<uint64_t> length = AsIndex(Find(view, "byteLength"));
+  if (length.has_value() && *length > kAlignment) view["byteLength"] = kAlignment;
+  view.erase("byteStride");
+  view.erase("target");
+}
+
+struct Interval {
+  uint64_t begin = 0;
+  uint64_t end = 0;
+  uint64_t moved_to = 0;
+};
+
+// Disjoint parts of one buffer, ascending, that cover all its views.
+std::vector<Interval> Union(std::vector<Interval> intervals) {
+  std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+  std::vector<Interval> merged;
+  for (const Interval& interval : intervals) {
+    if (!merged.empty() && interval.begin < merged.back().end) {
+      merged.back().end = std::max(merged.back().end, interval.end);
+    } else {
+      merged.push_back(interval);
+    }
+  }
+  return merged;
+}
+
+}  // namespace
+
+uint64_t AddBuffer(Bytes bytes, GltfDocument* document) {
+  Json& buffers = document->json["buffers"];
+  if (!buffers.is_array()) buffers = Json::array();
+  buffers.push_back({{"byteLength", bytes.size()}});
+  document->buffers.push_back(std::move(bytes));
+  return buffers.size() - 1;
+}
+
+uint64_t AddBufferView(uint64_t buffer, uint64_t offset, uint64_t length, GltfDocument* document) {
+  Json& views = document->json["bufferViews"];
+  if (!views.is_array()) views = Json::array();
+  views.push_back({{"buffer", buffer}, {"byteOffset", offset}, {"byteLength", length}});
+  return views.size() - 1;
+}
+
+Json DescribeAccessor(const AccessorData& data, bool bounds) {
+  Json accessor = {
+      {"componentType", static_cast<uint32_t>(data.type)}, {"count", data.count}, {"type", TypeName(data.components)}};
+  if (data.normalized) accessor["normalized"] = true;
+  if (bounds) AddBounds(data, &accessor);
+  return accessor;
+}
+
+Json MakeAccessor(const AccessorData& data, AccessorUse use, bool bounds, GltfDocument* document) {
+  constexpr uint32_t kArrayBuffer = 34962;
+  constexpr uint32_t kElementArrayBuffer = 34963;
+  const size_t size = data.components * ComponentSize(data.type);
+  const size_t stride = use == AccessorUse::kAttribute ? (size + kAlignment - 1) / kAlignment * kAlignment : size;
+  Bytes bytes;
+  if (stride == size) {
+    bytes = data.bytes;
+  } else {
+    bytes.resize(stride * static_cast<size_t>(data.count));
+    for (size_t i = 0; i < data.count; ++i) {
+      std::copy_n(data.bytes.begin() + static_cast<std::ptrdiff_t>(i * size), size,
+                  bytes.begin() + static_cast<std::ptrdiff_t>(i * stride));
+    }
+  }
+  const uint64_t length = bytes.size();
+  const uint64_t view = AddBufferView(AddBuffer(std::move(bytes), document), 0, length, document);
+  Json& view_json = document->json["bufferViews"][static_cast<size_t>(view)];
+  if (stride != size) view_json["byteStride"] = stride;
+  view_json["target"] = use == AccessorUse::kAttribute ? kArrayBuffer : kElementArrayBuffer;
+  Json accessor = {{"bufferView", view}};
+  accessor.update(DescribeAccessor(data, bounds));
+  return accessor;
+}
+
+uint64_t AddAccessor(Json accessor, GltfDocument* document) {
+  Json& accessors = document->json["accessors"];
+  if (!accessors.is_array()) accessors = Json::array();
+  accessors.push_back(std::move(accessor));
+  return accessors.size() - 1;
+}
+
+std::set<uint64_t> ViewsOfAccessor(const GltfDocument& document, uint64_t index) {
+  std::set<uint64_t> views;
+  const Json* accessor = FindElement(document.json, "accessors", index);
+  if (accessor == nullptr) return views;
+  Json copy = *accessor;
+  VisitViewReferences(copy, [&](Json& reference) {
+    if (const std::optional<uint64_t> view = AsIndex(&reference); view.has_value()) views.insert(*view);
+  });
+  return views;
+}
+
+void DropUnusedViews(const std::set<uint64_t>& candidates, GltfDocument* document) {
+  std::set<uint64_t> unused = candidates;
+  VisitViewReferences(document->json, [&](Json& reference) {
+    if (const std::optional<uint64_t> view = AsIndex(&reference); view.has_value()) unused.erase(*view);
+  });
+  if (unused.empty()) return;
+  if (!MayRenumberViews(*document)) {
+    for (const uint64_t index : unused) ShrinkView(index, document);
+    return;
+  }
+  const Json& old_views = document->json["bufferViews"];
+  std::vector<uint64_t> new_index(old_views.size());
+  Json views = Json::array();
+  for (size_t i = 0; i < old_views.size(); ++i) {
+    new_index[i] = views.size();
+    if (unused.count(i) == 0) views.push_back(old_views[i]);
+  }
+  VisitViewReferences(document->json, [&](Json& reference) {
+    const std::optional<uint64_t> view = AsIndex(&reference);
+    if (view.has_value() && *view < new_index.size()) reference = new_index[static_cast<size_t>(*view)];
+  });
+  if (views.empty()) {
+    document->json.erase("bufferViews");
+  } else {
+    document->json["bufferViews"] = std::move(views);
+  }
+}
+
+Status MergeBuffers(GltfDocument* document) {
+  std::map<uint64_t, std::vector<Interval>> used;
+  const uint64_t num_views = ArraySize(document->json, "bufferViews");
+  for (uint64_t i = 0; i < num_views; ++i) {
+    LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(*document, i));
+    const uint64_t buffer = *AsIndex(Find(*FindElement(document->json, "bufferViews", i), "buffer"));
+    const auto begin = static_cast<uint64_t>(bytes.data() - document->buffers[static_cast<size_t>(buffer)].data());
+    if (!bytes.empty()) used[buffer].push_back({begin, begin + bytes.size(), 0});
+  }
+  Bytes merged;
+  for (auto& [buffer, intervals] : used) {
+    intervals = Union(std::move(intervals));
+    const Bytes& source = document->buffers[static_cast<size_t>(buffer)];
+    for (Interval& interval : intervals) {
+      while (merged.size() % kAlignment != interval.begin % kAlignment) merged.push_back(0);
+      interval.moved_to = merged.size();
+      merged.insert(merged.end(), source.begin() + static_cast<std::ptrdiff_t>(interval.begin),
+                    source.begin() + static_cast<std::ptrdiff_t>(interval.end));
+    }
+  }
+  constexpr uint64_t kRoomForJson = uint64_t{1} << 30;
+  if (merged.size() > std::numeric_limits<uint32_t>::max() - kRoomForJson) {
+    return Unsupported("the result would not fit into a GLB (4 GB); split the asset");
+  }
+  for (uint64_t i = 0; i < num_views; ++i) {
+    Json& view = document->json["bufferViews"][static_cast<size_t>(i)];
+    const uint64_t offset = AsIndex(Find(view, "byteOffset")).value_or(0);
+    uint64_t moved = 0;
+    for (const Interval& interval : used[*AsIndex(Find(view, "buffer"))]) {
+      if (offset >= interval.begin && offset < interval.end) moved = interval.moved_to + (offset - interval.begin);
+    }
+    view["buffer"] = 0;
+    view["byteOffset"] = moved;
+  }
+  document->buffers.clear();
+  document->json.erase("buffers");
+  if (!merged.empty()) AddBuffer(std::move(merged), document);
+  return Status();
+}
+
+}  // namespace lacerta

@@ -1,0 +1,43 @@
+// Changing what a document holds: new bufferViews and accessors, dropping unused views, one buffer at the end.
+#ifndef LACERTA_DOCUMENT_BUFFER_EDIT_H_
+#define LACERTA_DOCUMENT_BUFFER_EDIT_H_
+
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include "document/accessor.h"
+#include "document/gltf_document.h"
+#include "document/primitive.h"
+
+namespace lacerta {
+
+// Appends a buffer of its own that holds `bytes`; returns its index.
+uint64_t AddBuffer(Bytes bytes, GltfDocument* document);
+
+// Appends a view of a part of a buffer; returns its index.
+uint64_t AddBufferView(uint64_t buffer, uint64_t offset, uint64_t length, GltfDocument* document);
+
+enum class AccessorUse { kAttribute, kIndices };
+
+// The JSON of an accessor over `data` with a buffer and a view of its own; min and max are given where `bounds` is set.
+Json MakeAccessor(const AccessorData& data, AccessorUse use, bool bounds, GltfDocument* document);
+// The same without any data: what a compressed primitive shows.
+Json DescribeAccessor(const AccessorData& data, bool bounds);
+
+uint64_t AddAccessor(Json accessor, GltfDocument* document);
+
+// The bufferViews that accessor `index` refers to, itself or through its sparse part.
+std::set<uint64_t> ViewsOfAccessor(const GltfDocument& document, uint64_t index);
+
+// Drops those of `candidates` that nothing refers to any more and renumbers the others. Where the asset uses an
+// extension that may refer to bufferViews in a way of its own, they are cut down to a few bytes instead.
+void DropUnusedViews(const std::set<uint64_t>& candidates, GltfDocument* document);
+
+// Moves all that bufferViews refer to into one buffer, in the order of the buffers, and drops the rest. Fails with
+// kUnsupported beyond 4 GB and with kInvalidData where a view refers to bytes that are not there.
+Status MergeBuffers(GltfDocument* document);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DOCUMENT_BUFFER_EDIT_H_

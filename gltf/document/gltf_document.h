@@ -1,0 +1,45 @@
+// A glTF 2.0 asset in memory: its JSON and its buffers, not interpreted any further.
+#ifndef LACERTA_DOCUMENT_GLTF_DOCUMENT_H_
+#define LACERTA_DOCUMENT_GLTF_DOCUMENT_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "document/json.h"
+#include "lacerta/mesh.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+struct GltfDocument {
+  Json json = Json::object();
+  std::vector<Bytes> buffers;  // parallel to json["buffers"]
+};
+
+// Reads a .glb (by its magic) or .gltf. External buffers are looked for in `folder`. A GLB whose BIN chunk was cut off
+// is accepted with the bytes that are there; what refers to the missing ones fails when it is looked at. Every
+// "byteLength" is held against the bytes that are really there. Fails with kInvalidData, kUnsupported (version, meshopt
+// compression) or what LoadUri returns.
+StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& folder);
+
+// A GLB of the document, which must have at most one buffer.
+Bytes FormatGlb(const GltfDocument& document);
+
+// The bytes of bufferViews[index]. Fails with kInvalidData when the view or its range is not there.
+StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint64_t index);
+
+// The same, but cut short where the buffer ends early. Fails when the view is not there.
+StatusOr<Span<const uint8_t>> AvailableViewBytes(const GltfDocument& document, uint64_t index);
+
+// Whether a name is in the document's extensionsUsed.
+bool UsesExtension(const GltfDocument& document, const char* name);
+
+// Adds a name to the list `key` ("extensionsUsed" or "extensionsRequired"), or takes it away together with an empty
+// list.
+void AddExtension(const char* key, const char* name, GltfDocument* document);
+void RemoveExtension(const char* key, const char* name, GltfDocument* document);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DOCUMENT_GLTF_DOCUMENT_H_

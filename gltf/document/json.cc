@@ -1,0 +1,75 @@
+#include "document/json.h"
+
+#include <cmath>
+
+namespace lacerta {
+namespace {
+
+// Serializing is recursive, so the depth of what is read has to be bounded.
+constexpr int kMaxDepth = 256;
+
+}  // namespace
+
+StatusOr<Json> ParseJson(std::string_view text) {
+  bool too_deep = false;
+  const auto limit_depth = [&too_deep](int depth, Json::parse_event_t, Json&) {
+    too_deep = too_deep || depth > kMaxDepth;
+    return !too_deep;
+  };
+  Json json = Json::parse(text.begin(), text.end(), limit_depth, /*allow_exceptions=*/false);
+  if (too_deep) return InvalidData("the JSON is nested more than " + std::to_string(kMaxDepth) + " levels deep");
+  if (json.is_discarded()) return InvalidData("the JSON is not well formed; the file is truncated or damaged");
+  if (!json.is_object()) return InvalidData("the JSON is no object");
+  return json;
+}
+
+const Json* Find(const Json& object, const char* key) {
+  if (!object.is_object()) return nullptr;
+  const auto found = object.find(key);
+  return found == object.end() ? nullptr : &*found;
+}
+
+Json* Find(Json& object, const char* key) { return const_cast<Json*>(Find(static_cast<const Json&>(object), key)); }
+
+const Json* FindElement(const Json& object, const char* key, uint64_t index) {
+  const Json* array = Find(object, key);
+  return array != nullptr && array->is_array() && index < array->size() ? &(*array)[static_cast<size_t>(index)]
+                                                                        : nullptr;
+}
+
+uint64_t ArraySize(const Json& object, const char* key) {
+  const Json* array = Find(object, key);
+  return array != nullptr && array->is_array() ? array->size() : 0;
+}
+
+std::optional<uint64_t> AsIndex(const Json* value) {
+  if (value == nullptr) return std::nullopt;
+  if (value->is_number_unsigned()) return value->get<uint64_t>();
+  if (value->is_number_integer() && value->get<int64_t>() >= 0) return static_cast<uint64_t>(value->get<int64_t>());
+  if (value->is_number_float()) {
+    const double number = value->get<double>();
+    if (number >= 0.0 && number < 9e15 && number == std::floor(number)) return static_cast<uint64_t>(number);
+  }
+  return std::nullopt;
+}
+
+StatusOr<uint64_t> GetIndex(const Json& object, const char* key, std::optional<uint64_t> missing) {
+  const Json* value = Find(object, key);
+  if (value == nullptr && missing.has_value()) return *missing;
+  const std::optional<uint64_t> index = AsIndex(value);
+  if (!index.has_value()) return InvalidData(std::string("\"") + key + "\" is missing or no non-negative integer");
+  return *index;
+}
+
+std::optional<double> AsNumber(const Json* value) {
+  if (value == nullptr || !value->is_number()) return std::nullopt;
+  return value->get<double>();
+}
+
+bool IsTrue(const Json* value) { return value != nullptr && value->is_boolean() && value->get<bool>(); }
+
+std::string AsString(const Json* value) {
+  return value != nullptr && value->is_string() ? value->get<std::string>() : std::string();
+}
+
+}  // namespace lacerta

@@ -1,0 +1,151 @@
+#include "document/primitive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "document/draco_primitive.h"
+
+namespace lacerta {
+namespace {
+
+constexpr uint64_t kTriangles = 4;
+constexpr uint64_t kTriangleFan = 6;  // 5 is a strip
+
+std::vector<Triangle> Assemble(const std::vector<uint32_t>& corners, uint64_t mode) {
+  std::vector<Triangle> triangles;
+  if (mode == kTriangles) {
+    triangles.reserve(corners.size() / 3);
+    for (size_t i = 0; i + 2 < corners.size(); i += 3)
+      triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    return triangles;
+  }
+  for (size_t i = 2; i < corners.size(); ++i) {
+    if (mode == kTriangleFan) {
+      triangles.push_back({corners[i - 1], corners[i], corners[0]});
+    } else {
+      const size_t odd = i % 2;  // every other triangle of a strip is turned around
+      triangles.push_back({corners[i - 2], corners[i - 1 + odd], corners[i - odd]});
+    }
+  }
+  return triangles;
+}
+
+StatusOr<std::vector<uint32_t>> ReadCorners(const GltfDocument& document, const Json& primitive,
+                                            uint64_t num_vertices) {
+  std::vector<uint32_t> corners;
+  if (Find(primitive, "indices") == nullptr) {
+    corners.resize(static_cast<size_t>(num_vertices));
+    for (size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<uint32_t>(i);
+    return corners;
+  }
+  LACERTA_ASSIGN_OR_RETURN(const uint64_t accessor, GetIndex(primitive, "indices"));
+  LACERTA_ASSIGN_OR_RETURN(const AccessorData data, ReadAccessor(document, accessor));
+  const std::string name = "accessor " + std::to_string(accessor);
+  const bool is_unsigned =
+      data.type == ComponentType::kUint8 || data.type == ComponentType::kUint16 || data.type == ComponentType::kUint32;
+  if (data.components != 1 || !is_unsigned) return InvalidData(name + ": indices have to be unsigned integer scalars");
+  corners.reserve(static_cast<size_t>(data.count));
+  for (uint64_t i = 0; i < data.count; ++i) {
+    const uint32_t index = data.Uint(i, 0);
+    if (index >= num_vertices) {
+      return InvalidData(name + ": index " + std::to_string(index) + " at position " + std::to_string(i) +
+                         " is out of range, the primitive has " + std::to_string(num_vertices) + " vertices");
+    }
+    corners.push_back(index);
+  }
+  return corners;
+}
+
+StatusOr<Primitive> ReadPlain(const GltfDocument& document, const Json& primitive, uint64_t mode) {
+  Primitive result;
+  const Json* attributes = Find(primitive, "attributes");
+  if (attributes == nullptr || !attributes->is_object()) return InvalidData("has no attributes");
+  for (const auto& [name, index] : attributes->items()) {
+    const std::optional<uint64_t> accessor = AsIndex(&index);
+    if (!accessor.has_value()) return InvalidData("attribute " + name + " is no accessor index");
+    StatusOr<AccessorData> data = ReadAccessor(document, *accessor);
+    if (!data.ok()) return data.status().WithContext(name);
+    result.attributes.push_back({name, std::move(data).value()});
+  }
+  const Attribute* position = result.Find("POSITION");
+  if (position == nullptr) return InvalidData("has no POSITION");
+  result.num_vertices = position->data.count;
+  for (const Attribute& attribute : result.attributes) {
+    if (attribute.data.count != result.num_vertices) {
+      return InvalidData(attribute.name + ": has " + std::to_string(attribute.data.count) + " elements, POSITION has " +
+                         std::to_string(result.num_vertices));
+    }
+  }
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<uint32_t> corners, ReadCorners(document, primitive, result.num_vertices));
+  result.triangles = Assemble(corners, mode);
+  return result;
+}
+
+StatusOr<Primitive> ReadDraco(const GltfDocument& document, const Json& extension, const DecodeLimits& limits) {
+  LACERTA_ASSIGN_OR_RETURN(const uint64_t view, GetIndex(extension, "bufferView"));
+  LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(document, view));
+  const Json* attributes = Find(extension, "attributes");
+  if (attributes == nullptr || !attributes->is_object())
+    return InvalidData("KHR_draco_mesh_compression has no attributes");
+  std::vector<DracoAttributeId> ids;
+  for (const auto& [name, id] : attributes->items()) {
+    const std::optional<uint64_t> index = AsIndex(&id);
+    if (!index.has_value() || *index > std::numeric_limits<uint32_t>::max()) {
+      return InvalidData("KHR_draco_mesh_compression: attribute " + name + " is no attribute id");
+    }
+    ids.push_back({name, static_cast<uint32_t>(*index)});
+  }
+  StatusOr<Primitive> result = DecodeDracoPrimitive(bytes, ids, limits);
+  if (!result.ok()) return result.status().WithContext("bufferView " + std::to_string(view));
+  return result;
+}
+
+Status CheckPositions(const Primitive& primitive) {
+  const Attribute* position = primitive.Find("POSITION");
+  if (position == nullptr) return InvalidData("has no POSITION");
+  if (position->data.components != 3) return InvalidData("POSITION is not of type VEC3");
+  for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(position->data.Float(v, axis))) {
+        return InvalidData("POSITION: vertex " + std::to_string(v) + " is not finite; repair or remove it");
+      }
+    }
+  }
+  return Status();
+}
+
+}  // namespace
+
+const Attribute* Primitive::Find(const std::string& name) const {
+  const auto found =
+      std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.name == name; });
+  return found == attributes.end() ? nullptr : &*found;
+}
+
+StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& primitive, const DecodeLimits& limits) {
+  LACERTA_ASSIGN_OR_RETURN(const uint64_t mode, GetIndex(primitive, "mode", kTriangles));
+  if (mode < kTriangles || mode > kTriangleFan) return Unsupported("holds points or lines, no triangles");
+  const Json* extensions = Find(primitive, "extensions");
+  const Json* draco = extensions == nullptr ? nullptr : Find(*extensions, "KHR_draco_mesh_compression");
+  StatusOr<Primitive> result =
+      draco != nullptr ? ReadDraco(document, *draco, limits) : ReadPlain(document, primitive, mode);
+  if (!result.ok()) return result.status();
+  LACERTA_RETURN_IF_ERROR(CheckPositions(result.value()));
+  std::vector<Attribute>& attributes = result.value().attributes;
+  std::stable_partition(attributes.begin(), attributes.end(), [](const Attribute& a) { return a.name == "POSITION"; });
+  return result;
+}
+
+TriangleMesh Surface(const Primitive& primitive) {
+  TriangleMesh mesh;
+  mesh.triangles = primitive.triangles;
+  const Attribute* position = primitive.Find("POSITION");
+  mesh.positions.reserve(static_cast<size_t>(primitive.num_vertices));
+  for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
+    mesh.positions.push_back({position->data.Float(v, 0), position->data.Float(v, 1), position->data.Float(v, 2)});
+  }
+  return mesh;
+}
+
+}  // namespace lacerta

@@ -1,0 +1,58 @@
+// The JSON of LACERTA_mesh_progressive as a value, and the way back.
+#ifndef LACERTA_EXTENSION_PROGRESSIVE_H_
+#define LACERTA_EXTENSION_PROGRESSIVE_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "document/gltf_document.h"
+#include "lacerta/mesh.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+inline constexpr char kProgressiveName[] = "LACERTA_mesh_progressive";
+inline constexpr char kDracoName[] = "KHR_draco_mesh_compression";
+inline constexpr uint64_t kProgressiveVersion = 1;
+
+struct ProgressiveStream {
+  std::vector<uint64_t> vertex_counts;  // one per level, base first
+  std::vector<uint64_t> triangle_counts;
+  std::vector<double> errors;  // two-sided surface distance to the original, mesh units
+  Vec3f min, max;              // of the finest level
+  bool smooth_normals = false;
+};
+
+struct Segment {
+  uint64_t stream = 0;
+  uint64_t length = 0;  // bytes
+};
+
+struct Progressive {
+  uint64_t data = 0;              // bufferView of all segments
+  std::vector<Segment> segments;  // in the order of their bytes
+  std::vector<ProgressiveStream> streams;
+};
+
+// Reads and checks the extension at the root of a document: its version, every number, that streams have as many
+// segments as levels. Fails with kNotFound where there is none, kUnsupported for another version, kInvalidData.
+StatusOr<Progressive> ParseProgressive(const GltfDocument& document);
+Json FormatProgressive(const Progressive& progressive);
+
+// What is there of one stream: `bytes` may end early when the data was trimmed.
+struct GatheredStream {
+  Bytes bytes;
+  uint64_t base_length = 0;
+  uint64_t base_offset = 0;  // of the base segment in the bufferView `data`
+  bool complete = true;
+};
+StatusOr<GatheredStream> GatherStream(const GltfDocument& document, const Progressive& progressive, uint64_t stream);
+
+// Where the streams' parts go: all bases first, then always the next part of the stream that lowers its error most per
+// byte. part_lengths[s] and errors[s] are parallel: one per level of stream s, base first.
+std::vector<Segment> OrderSegments(const std::vector<std::vector<uint64_t>>& part_lengths,
+                                   const std::vector<std::vector<double>>& errors);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_EXTENSION_PROGRESSIVE_H_

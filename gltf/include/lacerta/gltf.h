@@ -1,0 +1,147 @@
+// glTF assets with progressive meshes: packing, unpacking, looking inside. The extension LACERTA_mesh_progressive is
+// described in gltf/LACERTA_mesh_progressive/README.md. No type of a glTF library in sight: assets travel as the bytes
+// of their files.
+#ifndef LACERTA_GLTF_H_
+#define LACERTA_GLTF_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lacerta/codec.h"
+#include "lacerta/decoder.h"
+#include "lacerta/mesh.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+// What a reader that does not know LACERTA_mesh_progressive shows.
+enum class Fallback {
+  kDraco,  // the base mesh, for readers of KHR_draco_mesh_compression; costs no bytes
+  kPlain,  // the base mesh, for every reader
+  kNone,   // nothing: such a reader refuses the asset
+};
+
+struct PackOptions {
+  // For every mesh by itself; a target in bytes is shared among the progressive meshes by their vertices.
+  EncodeOptions encode;
+  Fallback fallback = Fallback::kDraco;
+  std::string folder;  // where the external buffers of a .gltf are
+};
+
+enum class PrimitiveStorage {
+  kProgressive,  // LACERTA_mesh_progressive
+  kDraco,        // KHR_draco_mesh_compression with all attributes
+  kUntouched,    // as it was
+};
+
+struct PrimitiveReport {
+  uint64_t mesh = 0;  // index of the glTF mesh, and of the primitive in it
+  uint64_t primitive = 0;
+  std::string name;  // of the mesh; may be empty
+  PrimitiveStorage storage = PrimitiveStorage::kUntouched;
+  std::string reason;         // why it is not progressive, or what EncodeMesh had to say; else empty
+  uint64_t bytes_before = 0;  // of its attributes and indices
+  uint64_t bytes_after = 0;
+  EncodeReport encode;  // of progressive ones
+};
+
+struct PackReport {
+  std::vector<PrimitiveReport> primitives;
+  std::vector<std::string> notes;  // on the asset as a whole
+};
+
+struct PackResult {
+  Bytes glb;
+  PackReport report;
+};
+
+// Packs a .glb or .gltf. Every mesh of one primitive with positions only (and normals that can be derived from them)
+// becomes progressive; other triangles are stored as KHR_draco_mesh_compression, and what neither can hold stays as it
+// was, each with its reason in the report. All else in the asset passes through: nodes, materials, images byte for
+// byte, animations, skins, extras, unknown extensions. Fails with kInvalidData, naming mesh, primitive, accessor and
+// index; kUnsupported for compressions and versions that it does not know; kInvalidArgument for options that do not go
+// together.
+StatusOr<PackResult> PackGltf(Span<const uint8_t> asset, const PackOptions& options);
+
+// Packs one mesh as an asset of its own. `name` may be empty. Fails like EncodeMesh.
+StatusOr<PackResult> PackMesh(const TriangleMesh& mesh, const std::string& name, const PackOptions& options);
+
+// A GLB of one mesh in core glTF, uncompressed. Triangle indices must be below #V. Fails with kUnsupported beyond 4 GB.
+StatusOr<Bytes> FormatPlainGlb(const TriangleMesh& mesh, const std::string& name);
+
+struct UnpackOptions {
+  std::optional<int> level;  // stop there; empty: as far as the data goes
+  std::string folder;
+  DecodeLimits limits;
+};
+
+// A progressive primitive as read.
+struct ProgressiveSurface {
+  uint64_t mesh = 0;
+  uint64_t primitive = 0;
+  TriangleMesh surface;
+  bool smooth_normals = false;  // the asset wants normals derived from the surface; else flat shading
+  int level = 0;                // of `surface`
+  int num_levels = 0;           // levels above the base that the asset announces
+  bool from_fallback = false;   // `surface` is the fallback geometry, not taken from the stream
+  std::string note;             // why the level is not the one asked for, or why the fallback was drawn; else empty
+};
+
+// All progressive primitives. A reference that leads nowhere, a checksum or bounds that do not match and the like make
+// the reader fall back to the core or KHR_draco geometry of that primitive and say so in its note; it fails only where
+// there is no such geometry.
+StatusOr<std::vector<ProgressiveSurface>> ReadProgressive(Span<const uint8_t> asset, const UnpackOptions& options);
+
+struct UnpackResult {
+  Bytes glb;
+  std::vector<std::string> notes;  // of ReadProgressive, each with its mesh
+};
+
+// The asset in core glTF: progressive and Draco-compressed primitives become plain accessors. Fails like
+// ReadProgressive.
+StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions& options);
+
+struct FlattenResult {
+  TriangleMesh mesh;
+  std::vector<std::string> notes;
+};
+
+// All triangles of the default scene (the first scene where none is named, all meshes where there is no scene) in world
+// coordinates. Skins and morph targets are not applied. Fails with kInvalidData or kUnsupported.
+StatusOr<FlattenResult> FlattenGltf(Span<const uint8_t> asset, const UnpackOptions& options);
+
+// One progressive stream: as the JSON of an asset describes it, or as read from its own headers.
+struct StreamInfo {
+  struct Level {
+    uint64_t vertices = 0;
+    uint64_t triangles = 0;
+    uint64_t bytes = 0;           // of the stream up to and with this level
+    std::optional<double> error;  // mesh units; a bare stream does not say
+    bool available = false;       // all its bytes are in the file
+  };
+  uint64_t mesh = 0;  // the first primitive that shows it
+  uint64_t primitive = 0;
+  std::string name;
+  double diagonal = 0.0;  // of the bounding box, mesh units
+  std::vector<Level> levels;
+};
+
+struct AssetInfo {
+  std::vector<StreamInfo> streams;
+  Fallback fallback = Fallback::kDraco;  // of the first stream; means nothing where there is no stream
+  uint64_t num_primitives = 0;
+  uint64_t num_draco_primitives = 0;  // with KHR_draco_mesh_compression but not progressive
+};
+
+// What is inside, without decoding. Fails with kInvalidData when the extension contradicts itself.
+StatusOr<AssetInfo> DescribeGltf(Span<const uint8_t> asset, const std::string& folder);
+
+// What a bare stream (.drc) holds: either form of ours, or a stock Draco mesh with its one level. Where the refinement
+// ends early, the levels after its end are left out. Fails like DecodeMesh.
+StatusOr<StreamInfo> DescribeStream(Span<const uint8_t> stream, const DecodeLimits& limits);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_GLTF_H_

@@ -1,0 +1,46 @@
+// Triangle meshes in files: what the command and the tools around it read and write.
+//
+// Readers take positions and faces and leave everything else (colours, normals, texture coordinates) aside. They are
+// safe on untrusted bytes: every count is held against the size of the file before memory is taken for it.
+#ifndef LACERTA_MESH_FILE_H_
+#define LACERTA_MESH_FILE_H_
+
+#include <cstdint>
+#include <string>
+
+#include "lacerta/mesh.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+enum class MeshFormat {
+  kPly,   // ascii, binary little and big endian
+  kObj,   // Wavefront
+  kOff,   // OFF, COFF, NOFF, STOFF in text form
+  kStl,   // ascii and binary; three vertices of its own for every triangle
+  kDrc,   // a stream of ours in either form, or any stock Draco mesh; finest level
+  kGltf,  // glb or gltf: the triangle primitives of the default scene with the transforms of their nodes
+};
+
+// The format of a file, by its first bytes where those are telling (ply, glb, drc), else by the extension of `path`.
+// Fails with kUnsupported, naming the extensions that are known.
+StatusOr<MeshFormat> DetectMeshFormat(const std::string& path, Span<const uint8_t> bytes);
+
+// Parses the bytes of one file. Polygons are cut into fans. Positions are float; values that are not finite as float
+// are refused with the index of the vertex, faces with fewer than three corners or an index out of range with that of
+// the face. `folder` is where the buffers of a .gltf are looked for; no other format uses it. Fails with kInvalidData,
+// naming line or byte offset, or kUnsupported.
+StatusOr<TriangleMesh> ParseMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder = "");
+
+// Reads a file of any of the formats above. Messages begin with `path`. Fails with kNotFound or kIoError besides what
+// ParseMesh returns.
+StatusOr<TriangleMesh> ReadMeshFile(const std::string& path);
+
+// Writes .ply (binary little endian), .obj or .glb (plain core glTF with smooth normals left to the viewer), chosen by
+// the extension of `path`. The file appears under its name only when it is complete. Fails with kUnsupported on another
+// extension, kInvalidArgument on an index out of range, kIoError.
+Status WriteMeshFile(const TriangleMesh& mesh, const std::string& path);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_MESH_FILE_H_

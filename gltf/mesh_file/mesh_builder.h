@@ -1,0 +1,29 @@
+// What all mesh readers check in the same way and in the same words.
+#ifndef LACERTA_MESH_FILE_MESH_BUILDER_H_
+#define LACERTA_MESH_FILE_MESH_BUILDER_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lacerta/mesh.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+// Appends a position; fails with kInvalidData when a coordinate is not finite as a float.
+Status AppendPosition(double x, double y, double z, TriangleMesh* mesh);
+
+// Appends a polygon as a fan around its first corner. `face` is its number in the file, counted from 0. Indices are
+// counted from 0 and have to lie below num_vertices, which need not be mesh->positions.size() yet.
+Status AppendPolygon(const std::vector<int64_t>& corners, uint64_t num_vertices, uint64_t face, TriangleMesh* mesh);
+
+// Fails unless there is something to compress: at least one triangle.
+Status CheckNotEmpty(const TriangleMesh& mesh);
+
+// Fails when `count` things that take at least `bytes_each` bytes cannot fit into `available` bytes of file.
+Status CheckCount(uint64_t count, uint64_t bytes_each, uint64_t available, const std::string& what);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_MESH_FILE_MESH_BUILDER_H_

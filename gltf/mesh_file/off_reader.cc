@@ -1,0 +1,109 @@
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mesh_file/mesh_builder.h"
+#include "mesh_file/readers.h"
+#include "mesh_file/text_scanner.h"
+
+namespace lacerta {
+namespace {
+
+// The next line that holds anything besides blanks and a comment.
+Status NextDataLine(TextScanner* scanner, std::string_view* line) {
+  while (scanner->NextLine(line)) {
+    *line = line->substr(0, line->find('#'));
+    std::string_view rest = *line;
+    if (!TakeWord(&rest).empty()) return Status();
+  }
+  return InvalidData("the file ends too early; it is truncated");
+}
+
+// [ST][C][N][4][n]OFF: texture coordinates, colours and normals come after the position and are left aside.
+Status CheckKeyword(std::string_view keyword) {
+  if (keyword.size() < 3 || keyword.substr(keyword.size() - 3) != "OFF") {
+    return InvalidData("does not begin with OFF; this is no OFF file");
+  }
+  std::string_view prefix = keyword.substr(0, keyword.size() - 3);
+  if (prefix.substr(0, 2) == "ST") prefix.remove_prefix(2);
+  if (prefix.substr(0, 1) == "C") prefix.remove_prefix(1);
+  if (prefix.substr(0, 1) == "N") prefix.remove_prefix(1);
+  if (prefix.empty()) return Status();
+  return Unsupported("the variant " + std::string(keyword.substr(0, 40)) + " is not read; convert it to OFF");
+}
+
+Status ParseCount(std::string_view* words, const char* what, uint64_t* count) {
+  const std::string_view word = TakeWord(words);
+  int64_t value = 0;
+  if (!ParseInt(word, &value) || value < 0) {
+    return InvalidData(std::string("the number of ") + what + " is \"" + std::string(word.substr(0, 40)) + "\"");
+  }
+  *count = static_cast<uint64_t>(value);
+  return Status();
+}
+
+Status ReadVertex(std::string_view line, TriangleMesh* mesh) {
+  double xyz[3];
+  for (double& value : xyz) {
+    const std::string_view word = TakeWord(&line);
+    if (!ParseDouble(word, &value))
+      return InvalidData("\"" + std::string(word.substr(0, 40)) + "\" is not a coordinate");
+  }
+  return AppendPosition(xyz[0], xyz[1], xyz[2], mesh);
+}
+
+Status ReadFace(std::string_view line, uint64_t face, std::vector<int64_t>* corners, TriangleMesh* mesh) {
+  uint64_t count = 0;
+  LACERTA_RETURN_IF_ERROR(ParseCount(&line, "corners of a face", &count));
+  LACERTA_RETURN_IF_ERROR(CheckCount(count, 2, line.size() + 1, "corners of a face"));
+  corners->clear();
+  for (uint64_t i = 0; i < count; ++i) {
+    const std::string_view word = TakeWord(&line);
+    int64_t index = 0;
+    if (!ParseInt(word, &index))
+      return InvalidData("\"" + std::string(word.substr(0, 40)) + "\" is not a vertex index");
+    corners->push_back(index);
+  }
+  return AppendPolygon(*corners, mesh->positions.size(), face, mesh);
+}
+
+Status ReadAll(TextScanner* scanner, TriangleMesh* mesh) {
+  std::string_view line;
+  LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
+  LACERTA_RETURN_IF_ERROR(CheckKeyword(TakeWord(&line)));
+  std::string_view rest = line;
+  const std::string_view next = TakeWord(&rest);
+  if (next == "BINARY") return Unsupported("binary OFF is not read; convert it to text");
+  if (next.empty()) LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
+  uint64_t num_vertices = 0;
+  uint64_t num_faces = 0;
+  LACERTA_RETURN_IF_ERROR(ParseCount(&line, "vertices", &num_vertices));
+  LACERTA_RETURN_IF_ERROR(ParseCount(&line, "faces", &num_faces));
+  LACERTA_RETURN_IF_ERROR(CheckCount(num_vertices, 6, scanner->bytes_left() + 1, "vertices"));
+  mesh->positions.reserve(static_cast<size_t>(num_vertices));
+  for (uint64_t v = 0; v < num_vertices; ++v) {
+    LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
+    LACERTA_RETURN_IF_ERROR(ReadVertex(line, mesh));
+  }
+  LACERTA_RETURN_IF_ERROR(CheckCount(num_faces, 8, scanner->bytes_left() + 1, "faces"));
+  mesh->triangles.reserve(static_cast<size_t>(num_faces));
+  std::vector<int64_t> corners;
+  for (uint64_t f = 0; f < num_faces; ++f) {
+    LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
+    LACERTA_RETURN_IF_ERROR(ReadFace(line, f, &corners, mesh));
+  }
+  return Status();
+}
+
+}  // namespace
+
+StatusOr<TriangleMesh> ParseOff(Span<const uint8_t> bytes) {
+  TextScanner scanner({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  TriangleMesh mesh;
+  const Status status = ReadAll(&scanner, &mesh);
+  if (!status.ok()) return status.WithContext(scanner.LineName());
+  LACERTA_RETURN_IF_ERROR(CheckNotEmpty(mesh));
+  return mesh;
+}
+
+}  // namespace lacerta

@@ -1,0 +1,19 @@
+// One parser per format; what they promise is in lacerta/mesh_file.h (ParseMesh).
+#ifndef LACERTA_MESH_FILE_READERS_H_
+#define LACERTA_MESH_FILE_READERS_H_
+
+#include <cstdint>
+
+#include "lacerta/mesh.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+StatusOr<TriangleMesh> ParsePly(Span<const uint8_t> bytes);
+StatusOr<TriangleMesh> ParseObj(Span<const uint8_t> bytes);
+StatusOr<TriangleMesh> ParseOff(Span<const uint8_t> bytes);
+StatusOr<TriangleMesh> ParseStl(Span<const uint8_t> bytes);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_MESH_FILE_READERS_H_

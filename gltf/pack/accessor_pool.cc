@@ -1,0 +1,118 @@
+#include "pack/accessor_pool.h"
+
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "document/buffer_edit.h"
+
+namespace lacerta {
+namespace {
+
+// Every integer inside, wherever it stands: for extensions, where any number may be an accessor.
+void VisitIntegers(const Json& json, const std::function<void(const Json&)>& visit) {
+  if (json.is_structured()) {
+    for (const Json& element : json) VisitIntegers(element, visit);
+  } else if (AsIndex(&json).has_value()) {
+    visit(json);
+  }
+}
+
+// Calls visit on every extensions object of the document.
+void VisitExtensions(const Json& json, const std::function<void(const Json&)>& visit) {
+  if (json.is_object()) {
+    for (const auto& [key, value] : json.items()) {
+      if (key == "extensions") {
+        visit(value);
+      } else if (key != "extras") {
+        VisitExtensions(value, visit);
+      }
+    }
+  } else if (json.is_array()) {
+    for (const Json& element : json) VisitExtensions(element, visit);
+  }
+}
+
+// Extensions known to refer to no accessor of their own.
+bool NamesNoAccessors(const std::string& name) {
+  for (const char* prefix : {"KHR_", "LACERTA_", "MSFT_", "EXT_texture_", "EXT_lights_"}) {
+    if (name.rfind(prefix, 0) == 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+AccessorPool::AccessorPool(const GltfDocument& document, const std::vector<Place>& geometries)
+    : users_(static_cast<size_t>(ArraySize(document.json, "accessors")), 0) {
+  for (const Place& place : geometries) {
+    const Json& primitive = PrimitiveAt(document, place);
+    for (const char* key : {"attributes", "indices", "targets"}) {
+      if (const Json* references = Find(primitive, key); references != nullptr) Count(*references);
+    }
+  }
+  for (uint64_t i = 0; i < ArraySize(document.json, "skins"); ++i) {
+    if (const Json* matrices = Find(*FindElement(document.json, "skins", i), "inverseBindMatrices");
+        matrices != nullptr) {
+      Count(*matrices);
+    }
+  }
+  for (uint64_t i = 0; i < ArraySize(document.json, "animations"); ++i) {
+    if (const Json* samplers = Find(*FindElement(document.json, "animations", i), "samplers"); samplers != nullptr) {
+      Count(*samplers);
+    }
+  }
+  // Extensions of nodes and the like; too many is better than too few. Those of primitives that hold geometry are
+  // looked at by ReasonToKeep, and Draco's own numbers are no accessors.
+  VisitExtensions(document.json, [this](const Json& extensions) {
+    if (!extensions.is_object()) return;
+    for (const auto& [name, value] : extensions.items()) {
+      if (!NamesNoAccessors(name)) Count(value);
+    }
+  });
+}
+
+void AccessorPool::Count(const Json& references) {
+  VisitIntegers(references, [this](const Json& reference) {
+    const uint64_t index = *AsIndex(&reference);
+    if (index < users_.size()) ++users_[static_cast<size_t>(index)];
+  });
+}
+
+void AccessorPool::ReleaseOne(const Json& reference, GltfDocument* document) {
+  const std::optional<uint64_t> index = AsIndex(&reference);
+  if (!index.has_value() || *index >= users_.size()) return;
+  uint64_t& users = users_[static_cast<size_t>(*index)];
+  if (users == 0 || --users > 0) return;
+  const std::set<uint64_t> views = ViewsOfAccessor(*document, *index);
+  released_views_.insert(views.begin(), views.end());
+  Json& accessor = document->json["accessors"][static_cast<size_t>(*index)];
+  for (const char* key : {"bufferView", "byteOffset", "sparse", "min", "max"}) accessor.erase(key);
+  accessor["count"] = 1;  // stands until it is used again: one zero
+  free_.insert(*index);
+}
+
+void AccessorPool::Release(const Json& primitive, GltfDocument* document) {
+  const Json* attributes = Find(primitive, "attributes");
+  if (attributes != nullptr && attributes->is_object()) {
+    for (const Json& reference : *attributes) ReleaseOne(reference, document);
+  }
+  if (const Json* indices = Find(primitive, "indices"); indices != nullptr) ReleaseOne(*indices, document);
+}
+
+uint64_t AccessorPool::Put(Json accessor, std::optional<uint64_t> preferred, GltfDocument* document) {
+  const bool take_preferred = preferred.has_value() && free_.count(*preferred) > 0;
+  if (!take_preferred && free_.empty()) return AddAccessor(std::move(accessor), document);
+  const uint64_t index = take_preferred ? *preferred : *free_.begin();
+  free_.erase(index);
+  Json& place = document->json["accessors"][static_cast<size_t>(index)];
+  if (take_preferred) {
+    for (const char* key : {"name", "extras"}) {
+      if (const Json* kept = Find(place, key); kept != nullptr) accessor[key] = *kept;
+    }
+  }
+  place = std::move(accessor);
+  return index;
+}
+
+}  // namespace lacerta

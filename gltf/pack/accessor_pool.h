@@ -1,0 +1,41 @@
+// Accessors of primitives that are stored anew: the old ones are given back and used again, so that indices that others
+// hold stay true and no unused accessor piles up.
+#ifndef LACERTA_PACK_ACCESSOR_POOL_H_
+#define LACERTA_PACK_ACCESSOR_POOL_H_
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "document/gltf_document.h"
+#include "document/place.h"
+
+namespace lacerta {
+
+class AccessorPool {
+ public:
+  // Counts who refers to which accessor: `geometries` (one primitive of each), skins, animations and extensions.
+  AccessorPool(const GltfDocument& document, const std::vector<Place>& geometries);
+
+  // The geometry of `primitive` needs its accessors no more. Call once per geometry.
+  void Release(const Json& primitive, GltfDocument* document);
+
+  // Puts `accessor` at the index `preferred` if that is free, else at another free one, else at the end; returns where.
+  uint64_t Put(Json accessor, std::optional<uint64_t> preferred, GltfDocument* document);
+
+  // bufferViews that released accessors referred to.
+  const std::set<uint64_t>& released_views() const { return released_views_; }
+
+ private:
+  void Count(const Json& references);
+  void ReleaseOne(const Json& reference, GltfDocument* document);
+
+  std::vector<uint64_t> users_;
+  std::set<uint64_t> free_;
+  std::set<uint64_t> released_views_;
+};
+
+}  // namespace lacerta
+
+#endif  // LACERTA_PACK_ACCESSOR_POOL_H_

@@ -1,0 +1,32 @@
+// What becomes of every primitive of an asset, decided before anything is changed.
+#ifndef LACERTA_PACK_PLAN_H_
+#define LACERTA_PACK_PLAN_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "document/draco_primitive.h"
+#include "document/gltf_document.h"
+#include "document/place.h"
+#include "document/primitive.h"
+#include "lacerta/gltf.h"
+
+namespace lacerta {
+
+// Primitives that show the same accessors are stored once.
+struct PrimitivePlan {
+  std::vector<Place> places;    // at least one
+  PrimitiveReport report;       // of the first place
+  bool smooth_normals = false;  // NORMAL was dropped, readers derive it
+  std::optional<EncodedMesh> progressive;
+  std::optional<DracoEncoded> draco;
+};
+
+// Reads and encodes all primitives. Fails like PackGltf.
+StatusOr<std::vector<PrimitivePlan>> PlanPrimitives(const GltfDocument& document, const PackOptions& options);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_PACK_PLAN_H_

@@ -1,0 +1,49 @@
+// Giving a primitive other vertices and indices.
+#ifndef LACERTA_PACK_REPLACE_GEOMETRY_H_
+#define LACERTA_PACK_REPLACE_GEOMETRY_H_
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "document/gltf_document.h"
+#include "document/place.h"
+#include "document/primitive.h"
+#include "lacerta/mesh.h"
+#include "pack/accessor_pool.h"
+
+namespace lacerta {
+
+struct NamedAccessor {
+  std::string name;  // of the attribute
+  Json json;
+};
+
+// What replaces the geometry of a primitive.
+struct NewGeometry {
+  std::vector<NamedAccessor> attributes;
+  Json indices;
+  Json extensions = Json::object();  // added to those of the primitive
+};
+
+// Core accessors with their data.
+NewGeometry PlainGeometry(const TriangleMesh& mesh, bool with_normals, GltfDocument* document);
+NewGeometry PlainGeometry(const Primitive& primitive, GltfDocument* document);
+
+// Accessors without data, for geometry that an extension holds.
+NewGeometry DescribedGeometry(const TriangleMesh& mesh);
+NewGeometry DescribedGeometry(const Primitive& primitive);
+
+// All `places` show the same geometry so far and get the same new one. What compressed it before goes.
+void ReplaceGeometry(const std::vector<Place>& places, NewGeometry geometry, AccessorPool* pool,
+                     GltfDocument* document);
+
+// The bufferViews that hold Draco streams.
+std::set<uint64_t> DracoViews(const GltfDocument& document);
+
+// Lists KHR_draco_mesh_compression as used and required if a primitive has it, else not.
+void DeclareDraco(GltfDocument* document);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_PACK_REPLACE_GEOMETRY_H_

@@ -1,0 +1,17 @@
+// An asset around one mesh.
+#ifndef LACERTA_PACK_SINGLE_MESH_H_
+#define LACERTA_PACK_SINGLE_MESH_H_
+
+#include <string>
+
+#include "document/gltf_document.h"
+#include "lacerta/mesh.h"
+
+namespace lacerta {
+
+// One scene with one node that shows the mesh in core glTF: positions and indices. `name` may be empty.
+GltfDocument SingleMeshDocument(const TriangleMesh& mesh, const std::string& name);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_PACK_SINGLE_MESH_H_

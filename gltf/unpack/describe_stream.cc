@@ -1,0 +1,65 @@
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "decoder/stream_reader.h"
+#include "draco/base_mesh_codec.h"
+#include "draco/custom_form.h"
+#include "lacerta/gltf.h"
+#include "lacerta/surface_distance.h"
+
+namespace lacerta {
+namespace {
+
+uint64_t CountEdges(const std::vector<Triangle>& triangles) {
+  std::set<std::pair<uint32_t, uint32_t>> edges;
+  for (const Triangle& t : triangles) {
+    for (size_t i = 0; i < 3; ++i) edges.insert(std::minmax(t[i], t[(i + 1) % 3]));
+  }
+  return edges.size();
+}
+
+// Adds the levels whose segments are complete.
+Status AddLevels(Span<const uint8_t> refinement, uint64_t num_edges, StreamInfo* info) {
+  LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadHeader> read, ReadRefinementHeader(refinement));
+  if (!read.has_value()) return Status();
+  StreamInfo::Level level = info->levels[0];
+  size_t offset = read->size;
+  level.bytes += read->size;
+  for (size_t i = 1; i <= read->header.steps.size(); ++i) {
+    const StatusOr<std::optional<ReadSegment>> segment =
+        ReadRefinementSegment(refinement.Subspan(offset), static_cast<int>(i));
+    if (!segment.ok() || !segment.value().has_value()) return Status();
+    offset += segment.value()->size;
+    level.bytes += segment.value()->size;
+    level.vertices += num_edges;
+    num_edges = 2 * num_edges + 3 * level.triangles;
+    level.triangles *= 4;
+    info->levels.push_back(level);
+  }
+  return Status();
+}
+
+}  // namespace
+
+StatusOr<StreamInfo> DescribeStream(Span<const uint8_t> stream, const DecodeLimits& limits) {
+  StreamParts parts;
+  if (IsCustomForm(stream)) {
+    LACERTA_ASSIGN_OR_RETURN(parts, SplitCustomForm(stream));
+  } else {
+    parts.base = stream;
+  }
+  LACERTA_ASSIGN_OR_RETURN(const DecodedBase base, DecodeBaseMesh(parts.base, limits));
+  if (!IsCustomForm(stream)) parts.refinement = stream.Subspan(base.bytes_used);
+  StreamInfo info;
+  info.diagonal = BoundingBoxDiagonal(base.mesh);
+  const uint64_t base_bytes = stream.size() - parts.refinement.size();
+  info.levels.push_back({base.mesh.positions.size(), base.mesh.triangles.size(), base_bytes, std::nullopt, true});
+  if (!parts.refinement.empty()) {
+    LACERTA_RETURN_IF_ERROR(AddLevels(parts.refinement, CountEdges(base.mesh.triangles), &info));
+  }
+  return info;
+}
+
+}  // namespace lacerta

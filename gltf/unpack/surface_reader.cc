@@ -1,0 +1,157 @@
+#include "unpack/surface_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "document/accessor.h"
+#include "document/buffer_edit.h"
+#include "document/primitive.h"
+
+namespace lacerta {
+namespace {
+
+struct Bounds {
+  Vec3f min, max;
+};
+
+Bounds BoundsOf(const std::vector<Vec3f>& positions) {
+  Bounds bounds;
+  if (positions.empty()) return bounds;
+  bounds = {positions[0], positions[0]};
+  for (const Vec3f& position : positions) {
+    for (int axis = 0; axis < 3; ++axis) {
+      bounds.min[axis] = std::min(bounds.min[axis], position[axis]);
+      bounds.max[axis] = std::max(bounds.max[axis], position[axis]);
+    }
+  }
+  return bounds;
+}
+
+// Decoders may differ in the last bits of a float, editors change far more.
+bool Near(const Bounds& a, const Bounds& b) {
+  const float tolerance = 1e-5f * (Norm(a.max - a.min) + Norm(a.min) + Norm(a.max));
+  return Norm(a.min - b.min) <= tolerance && Norm(a.max - b.max) <= tolerance;
+}
+
+bool AccessorVec3(const Json& accessor, const char* key, Vec3f* value) {
+  for (uint64_t axis = 0; axis < 3; ++axis) {
+    const std::optional<double> number = AsNumber(FindElement(accessor, key, axis));
+    if (!number.has_value()) return false;
+    (*value)[static_cast<int>(axis)] = static_cast<float>(*number);
+  }
+  return true;
+}
+
+// The fallback must still be the base of the stream, else somebody changed the one without knowing of the other.
+Status CheckFallback(const GltfDocument& document, const Json& primitive, const GatheredStream& stream,
+                     const TriangleMesh& base) {
+  const Status edited =
+      InvalidData("the fallback geometry is no longer the base of the stream; a tool that does not know " +
+                  std::string(kProgressiveName) + " edited the asset");
+  if (const Json* draco = PrimitiveExtension(primitive, kDracoName); draco != nullptr) {
+    LACERTA_ASSIGN_OR_RETURN(const uint64_t view, GetIndex(*draco, "bufferView"));
+    LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(document, view));
+    if (bytes.size() != stream.base_length || std::memcmp(bytes.data(), stream.bytes.data(), bytes.size()) != 0)
+      return edited;
+  }
+  const Json* attributes = Find(primitive, "attributes");
+  const std::optional<uint64_t> index = attributes == nullptr ? std::nullopt : AsIndex(Find(*attributes, "POSITION"));
+  const Json* accessor = index.has_value() ? FindElement(document.json, "accessors", *index) : nullptr;
+  Bounds bounds;
+  if (accessor == nullptr || !AccessorVec3(*accessor, "min", &bounds.min) ||
+      !AccessorVec3(*accessor, "max", &bounds.max)) {
+    return InvalidData("the fallback has no accessor POSITION with min and max");
+  }
+  if (!Near(BoundsOf(base.positions), bounds)) return edited;
+  return Status();
+}
+
+bool HasFallback(const GltfDocument& document, const Json& primitive) {
+  if (PrimitiveExtension(primitive, kDracoName) != nullptr) return true;
+  const Json* attributes = Find(primitive, "attributes");
+  const std::optional<uint64_t> index = attributes == nullptr ? std::nullopt : AsIndex(Find(*attributes, "POSITION"));
+  return index.has_value() && !ViewsOfAccessor(document, *index).empty();
+}
+
+StatusOr<TriangleMesh> DecodeBase(const GatheredStream& stream, const DecodeLimits& limits) {
+  DecodeOptions options;
+  options.max_level = 0;
+  options.limits = limits;
+  LACERTA_ASSIGN_OR_RETURN(DecodedMesh base, DecodeMesh(stream.bytes, options));
+  return std::move(base.mesh);
+}
+
+Status CheckCounts(const ProgressiveStream& announced, const DecodedMesh& decoded) {
+  const auto level = static_cast<size_t>(decoded.level);
+  if (level >= announced.vertex_counts.size() || announced.vertex_counts[level] != decoded.mesh.positions.size() ||
+      announced.triangle_counts[level] != decoded.mesh.triangles.size()) {
+    return InvalidData("level " + std::to_string(decoded.level) +
+                       " of the stream does not have the size that the asset announces");
+  }
+  const bool finest = level + 1 == announced.vertex_counts.size();
+  if (finest && !Near(BoundsOf(decoded.mesh.positions), {announced.min, announced.max})) {
+    return InvalidData("the finest level does not have the bounds that the asset announces");
+  }
+  return Status();
+}
+
+StatusOr<ProgressiveSurface> ReadStream(const GltfDocument& document, const StatusOr<Progressive>& progressive,
+                                        const Json& primitive, const UnpackOptions& options) {
+  if (!progressive.ok()) return progressive.status();
+  const Json& extension = *PrimitiveExtension(primitive, kProgressiveName);
+  LACERTA_ASSIGN_OR_RETURN(const uint64_t index, GetIndex(extension, "stream"));
+  LACERTA_ASSIGN_OR_RETURN(const uint64_t group, GetIndex(extension, "group", 0));
+  if (index >= progressive.value().streams.size())
+    return InvalidData("stream " + std::to_string(index) + " does not exist");
+  if (group != 0)
+    return Unsupported("group " + std::to_string(group) + ": streams of several groups are not read by this version");
+  const ProgressiveStream& announced = progressive.value().streams[static_cast<size_t>(index)];
+  LACERTA_ASSIGN_OR_RETURN(const GatheredStream stream, GatherStream(document, progressive.value(), index));
+  if (HasFallback(document, primitive)) {
+    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh base, DecodeBase(stream, options.limits));
+    LACERTA_RETURN_IF_ERROR(CheckFallback(document, primitive, stream, base));
+  }
+  DecodeOptions decode;
+  decode.max_level = options.level;
+  decode.limits = options.limits;
+  LACERTA_ASSIGN_OR_RETURN(DecodedMesh decoded, DecodeMesh(stream.bytes, decode));
+  LACERTA_RETURN_IF_ERROR(CheckCounts(announced, decoded));
+  ProgressiveSurface surface;
+  surface.level = decoded.level;
+  surface.num_levels = static_cast<int>(announced.vertex_counts.size()) - 1;
+  surface.smooth_normals = announced.smooth_normals;
+  surface.surface = std::move(decoded.mesh);
+  const int wanted = std::min(options.level.value_or(surface.num_levels), surface.num_levels);
+  if (surface.level < wanted) {
+    surface.note = "decoded to level " + std::to_string(surface.level) + " of " + std::to_string(surface.num_levels) +
+                   ": " + (decoded.refinement.ok() ? "the rest of the data was cut off" : decoded.refinement.message());
+  }
+  return surface;
+}
+
+}  // namespace
+
+StatusOr<ProgressiveSurface> ReadSurface(const GltfDocument& document, const StatusOr<Progressive>& progressive,
+                                         const Place& place, const UnpackOptions& options) {
+  const Json& primitive = PrimitiveAt(document, place);
+  StatusOr<ProgressiveSurface> surface = ReadStream(document, progressive, primitive, options);
+  if (!surface.ok()) {
+    if (!HasFallback(document, primitive)) return surface.status();
+    StatusOr<Primitive> fallback = ReadPrimitive(document, primitive, options.limits);
+    if (!fallback.ok()) {
+      return fallback.status().WithContext(surface.status().message() + "; its fallback cannot be used either");
+    }
+    ProgressiveSurface drawn;
+    drawn.surface = Surface(fallback.value());
+    drawn.from_fallback = true;
+    drawn.note = "the fallback is used: " + surface.status().message();
+    surface = std::move(drawn);
+  }
+  surface.value().mesh = place.mesh;
+  surface.value().primitive = place.primitive;
+  return surface;
+}
+
+}  // namespace lacerta

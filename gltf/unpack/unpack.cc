@@ -1,0 +1,113 @@
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <utility>
+
+#include "document/buffer_edit.h"
+#include "document/gltf_document.h"
+#include "document/place.h"
+#include "document/primitive.h"
+#include "extension/progressive.h"
+#include "lacerta/gltf.h"
+#include "pack/accessor_pool.h"
+#include "pack/replace_geometry.h"
+#include "unpack/surface_reader.h"
+
+namespace lacerta {
+namespace {
+
+// Scales the first `components` numbers of every element to length 1 (or, for weights, to the sum 1).
+void Normalize(uint32_t components, bool sum, AccessorData* data) {
+  for (uint64_t i = 0; i < data->count; ++i) {
+    float values[4] = {};
+    double norm = 0.0;
+    for (uint32_t c = 0; c < components; ++c) {
+      values[c] = data->Float(i, c);
+      norm += sum ? values[c] : static_cast<double>(values[c]) * values[c];
+    }
+    if (!sum) norm = std::sqrt(norm);
+    if (!(norm > 0.0)) continue;
+    for (uint32_t c = 0; c < components; ++c) values[c] = static_cast<float>(values[c] / norm);
+    std::memcpy(data->bytes.data() + i * data->components * sizeof(float), values, components * sizeof(float));
+  }
+}
+
+// Quantization leaves normals, tangents and weights slightly off what glTF demands of them.
+void RestoreUnits(Primitive* primitive) {
+  for (Attribute& attribute : primitive->attributes) {
+    AccessorData& data = attribute.data;
+    if (data.type != ComponentType::kFloat) continue;
+    if (attribute.name == "NORMAL" && data.components == 3) Normalize(3, false, &data);
+    if (attribute.name == "WEIGHTS_0" && primitive->Find("WEIGHTS_1") == nullptr)
+      Normalize(data.components, true, &data);
+    if (attribute.name == "TANGENT" && data.components == 4) {
+      Normalize(3, false, &data);
+      for (uint64_t i = 0; i < data.count; ++i) {
+        const float sign = data.Float(i, 3) < 0.0f ? -1.0f : 1.0f;
+        std::memcpy(data.bytes.data() + (4 * i + 3) * sizeof(float), &sign, sizeof(sign));
+      }
+    }
+  }
+}
+
+void DropProgressive(GltfDocument* document) {
+  if (Json* extensions = Find(document->json, "extensions"); extensions != nullptr && extensions->is_object()) {
+    extensions->erase(kProgressiveName);
+    if (extensions->empty()) document->json.erase("extensions");
+  }
+  RemoveExtension("extensionsUsed", kProgressiveName, document);
+  RemoveExtension("extensionsRequired", kProgressiveName, document);
+}
+
+}  // namespace
+
+StatusOr<std::vector<ProgressiveSurface>> ReadProgressive(Span<const uint8_t> asset, const UnpackOptions& options) {
+  LACERTA_ASSIGN_OR_RETURN(const GltfDocument document, ParseGltf(asset, options.folder));
+  const StatusOr<Progressive> progressive = ParseProgressive(document);
+  std::vector<ProgressiveSurface> surfaces;
+  for (const Place& place : AllPlaces(document)) {
+    if (PrimitiveExtension(PrimitiveAt(document, place), kProgressiveName) == nullptr) continue;
+    StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, place, options);
+    if (!surface.ok()) return surface.status().WithContext(PlaceName(document, place));
+    surfaces.push_back(std::move(surface).value());
+  }
+  return surfaces;
+}
+
+StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions& options) {
+  LACERTA_ASSIGN_OR_RETURN(GltfDocument document, ParseGltf(asset, options.folder));
+  const StatusOr<Progressive> progressive = ParseProgressive(document);
+  const std::vector<std::vector<Place>> groups = GroupByGeometry(document);
+  std::vector<Place> geometries;
+  for (const std::vector<Place>& places : groups) geometries.push_back(places[0]);
+  std::set<uint64_t> unused_views = DracoViews(document);
+  if (progressive.ok()) unused_views.insert(progressive.value().data);
+  AccessorPool pool(document, geometries);
+  UnpackResult result;
+  for (const std::vector<Place>& places : groups) {
+    const Json primitive = PrimitiveAt(document, places[0]);
+    Status status;
+    if (PrimitiveExtension(primitive, kProgressiveName) != nullptr) {
+      StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, places[0], options);
+      if (!surface.ok()) return surface.status().WithContext(PlaceName(document, places[0]));
+      if (!surface.value().note.empty())
+        result.notes.push_back(PlaceName(document, places[0]) + ": " + surface.value().note);
+      ReplaceGeometry(places, PlainGeometry(surface.value().surface, surface.value().smooth_normals, &document), &pool,
+                      &document);
+    } else if (PrimitiveExtension(primitive, kDracoName) != nullptr) {
+      StatusOr<Primitive> decoded = ReadPrimitive(document, primitive, options.limits);
+      if (!decoded.ok()) return decoded.status().WithContext(PlaceName(document, places[0]));
+      RestoreUnits(&decoded.value());
+      ReplaceGeometry(places, PlainGeometry(decoded.value(), &document), &pool, &document);
+    }
+  }
+  DropProgressive(&document);
+  DeclareDraco(&document);
+  unused_views.insert(pool.released_views().begin(), pool.released_views().end());
+  DropUnusedViews(unused_views, &document);
+  LACERTA_RETURN_IF_ERROR(MergeBuffers(&document));
+  result.glb = FormatGlb(document);
+  return result;
+}
+
+}  // namespace lacerta

@@ -1,0 +1,180 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "commands.h"
+#include "exit_code.h"
+#include "lacerta/codec.h"
+#include "lacerta/file_io.h"
+#include "lacerta/gltf.h"
+#include "lacerta/mesh_file.h"
+#include "progress.h"
+#include "report.h"
+
+namespace lacerta::cli {
+namespace {
+
+struct PackArguments {
+  std::string input;
+  std::string output;
+  double bytes = 0.0;
+  double bits_per_vertex = 0.0;
+  double psnr = 0.0;
+  double error = 0.0;
+  std::string fallback = "draco";  // one of the names that AddPackCommand lists, like the next two
+  std::string form = "draco";
+  std::string mode = "default";
+  bool json = false;
+};
+
+EncodeTarget Target(const PackArguments& arguments) {
+  if (arguments.bytes > 0.0) return {EncodeTarget::Kind::kBytes, arguments.bytes};
+  if (arguments.bits_per_vertex > 0.0) return {EncodeTarget::Kind::kBitsPerVertex, arguments.bits_per_vertex};
+  if (arguments.error > 0.0) return {EncodeTarget::Kind::kError, arguments.error};
+  if (arguments.psnr > 0.0) return {EncodeTarget::Kind::kPsnr, arguments.psnr};
+  return EncodeTarget();
+}
+
+// Whether a finished stream stays on the wrong side of what was asked for.
+bool MissesTarget(const EncodeTarget& target, const EncodeReport& report) {
+  if (report.levels.empty()) return false;
+  const LevelReport& finest = report.levels.back();
+  switch (target.kind) {
+    case EncodeTarget::Kind::kBytes:
+      return static_cast<double>(finest.bytes) > target.value;
+    case EncodeTarget::Kind::kBitsPerVertex:
+      return 8.0 * static_cast<double>(finest.bytes) > target.value * static_cast<double>(report.input_vertices);
+    case EncodeTarget::Kind::kPsnr:
+      return finest.psnr < target.value;
+    case EncodeTarget::Kind::kError:
+      return finest.error > target.value * report.diagonal;
+  }
+  return false;
+}
+
+bool MissesTarget(const EncodeTarget& target, const PackReport& report) {
+  double bytes = 0.0;
+  for (const PrimitiveReport& primitive : report.primitives) {
+    if (primitive.storage != PrimitiveStorage::kProgressive) continue;
+    bytes += static_cast<double>(primitive.bytes_after);
+    if (target.kind != EncodeTarget::Kind::kBytes && MissesTarget(target, primitive.encode)) return true;
+  }
+  return target.kind == EncodeTarget::Kind::kBytes && bytes > target.value;  // shared among the meshes
+}
+
+std::string Extension(const std::string& path) { return std::filesystem::path(path).extension().string(); }
+
+void PrintPackReport(const PackArguments& arguments, const PackReport& report, uint64_t before, uint64_t after) {
+  for (const PrimitiveReport& primitive : report.primitives) {
+    std::printf("mesh %llu%s%s%s: %s, %llu -> %llu bytes%s%s\n", static_cast<unsigned long long>(primitive.mesh),
+                primitive.name.empty() ? "" : " (", primitive.name.c_str(), primitive.name.empty() ? "" : ")",
+                StorageName(primitive.storage), static_cast<unsigned long long>(primitive.bytes_before),
+                static_cast<unsigned long long>(primitive.bytes_after), primitive.reason.empty() ? "" : "; ",
+                primitive.reason.c_str());
+    if (primitive.storage == PrimitiveStorage::kProgressive) PrintLevels(primitive.encode);
+  }
+  for (const std::string& note : report.notes) std::printf("note: %s\n", note.c_str());
+  std::printf("%s: %llu -> %llu bytes\n", arguments.output.c_str(), static_cast<unsigned long long>(before),
+              static_cast<unsigned long long>(after));
+}
+
+StatusOr<int> PackStream(const PackArguments& arguments, const EncodeOptions& options) {
+  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ReadMeshFile(arguments.input));
+  const StatusOr<EncodedMesh> encoded = EncodeMesh(mesh, options);
+  if (!encoded.ok()) return encoded.status().WithContext(arguments.input);
+  LACERTA_RETURN_IF_ERROR(WriteFileAtomically(arguments.output, encoded.value().stream));
+  const EncodeReport& report = encoded.value().report;
+  const bool missed = MissesTarget(options.target, report);
+  if (arguments.json) {
+    PrintJson({{"output", arguments.output},
+               {"bytes", encoded.value().stream.size()},
+               {"targetMet", !missed},
+               {"encode", ToJson(report)}});
+  } else if (StdoutIsTerminal()) {
+    PrintLevels(report);
+    if (!report.reason.empty()) std::printf("note: %s\n", report.reason.c_str());
+  }
+  if (missed)
+    std::fprintf(stderr, "lacerta: %s misses the target: %s\n", arguments.output.c_str(), report.reason.c_str());
+  return missed ? kExitTargetMissed : kExitOk;
+}
+
+StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& options, uint64_t* input_bytes) {
+  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(arguments.input));
+  *input_bytes = bytes.size();
+  LACERTA_ASSIGN_OR_RETURN(const MeshFormat format, DetectMeshFormat(arguments.input, bytes));
+  if (format == MeshFormat::kGltf) return PackGltf(bytes, options);
+  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ParseMesh(bytes, format, options.folder));
+  return PackMesh(mesh, std::filesystem::path(arguments.input).stem().string(), options);
+}
+
+StatusOr<int> PackAsset(const PackArguments& arguments, const EncodeOptions& encode) {
+  PackOptions options;
+  options.encode = encode;
+  if (arguments.fallback == "plain") options.fallback = Fallback::kPlain;
+  if (arguments.fallback == "none") options.fallback = Fallback::kNone;
+  options.folder = std::filesystem::path(arguments.input).parent_path().string();
+  uint64_t input_bytes = 0;
+  const StatusOr<PackResult> packed = PackAny(arguments, options, &input_bytes);
+  if (!packed.ok()) return packed.status().WithContext(arguments.input);
+  LACERTA_RETURN_IF_ERROR(WriteFileAtomically(arguments.output, packed.value().glb));
+  const PackReport& report = packed.value().report;
+  const bool missed = MissesTarget(encode.target, report);
+  if (arguments.json) {
+    Json json = {{"output", arguments.output}, {"bytes", packed.value().glb.size()}, {"targetMet", !missed}};
+    json.update(ToJson(report));
+    PrintJson(json);
+  } else if (StdoutIsTerminal()) {
+    PrintPackReport(arguments, report, input_bytes, packed.value().glb.size());
+  }
+  if (missed)
+    std::fprintf(stderr, "lacerta: %s misses the target; see the report for the reason\n", arguments.output.c_str());
+  return missed ? kExitTargetMissed : kExitOk;
+}
+
+int RunPack(const PackArguments& arguments) {
+  ProgressLine progress;
+  EncodeOptions options;
+  options.target = Target(arguments);
+  options.form = arguments.form == "custom" ? StreamForm::kCustom : StreamForm::kDraco;
+  options.mode = arguments.mode == "paper" ? EncodeMode::kPaper : EncodeMode::kDefault;
+  options.progress = progress.Callback();
+  const std::string extension = Extension(arguments.output);
+  StatusOr<int> result = InvalidArgument(arguments.output + ": the output has to be a .glb or .drc file");
+  if (extension == ".glb") result = PackAsset(arguments, options);
+  if (extension == ".drc") result = PackStream(arguments, options);
+  return result.ok() ? result.value() : Finish(result.status());
+}
+
+}  // namespace
+
+void AddPackCommand(CLI::App* app, int* exit_code) {
+  const auto arguments = std::make_shared<PackArguments>();
+  CLI::App* pack = app->add_subcommand("pack", "Compress a mesh or an asset");
+  pack->add_option("IN", arguments->input, "A .glb, .gltf, .obj, .ply, .off, .stl or .drc file")->required();
+  pack->add_option("-o,--output", arguments->output, "A .glb asset or a bare .drc stream")->required();
+  CLI::Option_group* target = pack->add_option_group("target", "What to aim at (default: --psnr 70)");
+  target->add_option("--bytes", arguments->bytes, "At most this many bytes of geometry, within 2 %")
+      ->check(CLI::PositiveNumber);
+  target->add_option("--bpv", arguments->bits_per_vertex, "At most this many bits per vertex of the input")
+      ->check(CLI::PositiveNumber);
+  target->add_option("--psnr", arguments->psnr, "At least this PSNR in dB, 20 log10(diagonal / error)")
+      ->check(CLI::PositiveNumber);
+  target->add_option("--error", arguments->error, "At most this surface error, as a share of the diagonal")
+      ->check(CLI::PositiveNumber);
+  target->require_option(0, 1);
+  pack->add_option("--fallback", arguments->fallback, "What readers without the extension show (.glb; default: draco)")
+      ->check(CLI::IsMember({"draco", "plain", "none"}));
+  pack->add_option("--form", arguments->form,
+                   "draco (default): every Draco reader shows the base; custom: only Lacerta opens it")
+      ->check(CLI::IsMember({"draco", "custom"}));
+  pack->add_option("--mode", arguments->mode, "default, or paper: as published, open loop")
+      ->check(CLI::IsMember({"default", "paper"}));
+  pack->add_flag("--json", arguments->json, "Print a report as JSON");
+  pack->footer(kExitCodeHelp);
+  pack->callback([arguments, exit_code] { *exit_code = RunPack(*arguments); });
+}
+
+}  // namespace lacerta::cli

@@ -1,0 +1,148 @@
+#include "report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "lacerta/surface_distance.h"
+
+namespace lacerta::cli {
+
+Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json ToJson(const EncodeReport& report) {
+  Json levels = Json::array();
+  for (const LevelReport& level : report.levels) {
+    levels.push_back({{"vertices", level.vertices},
+                      {"triangles", level.triangles},
+                      {"bytes", level.bytes},
+                      {"error", NumberOrNull(level.error)},
+                      {"psnr", NumberOrNull(level.psnr)}});
+  }
+  return {{"inputVertices", report.input_vertices},
+          {"inputTriangles", report.input_triangles},
+          {"diagonal", NumberOrNull(report.diagonal)},
+          {"cleaned",
+           {{"weldedVertices", report.clean.welded_vertices},
+            {"degenerateTriangles", report.clean.degenerate_triangles},
+            {"duplicateTriangles", report.clean.duplicate_triangles},
+            {"isolatedVertices", report.clean.isolated_vertices}}},
+          {"progressive", report.progressive},
+          {"reason", report.reason},
+          {"normalShare", NumberOrNull(report.normal_share)},
+          {"remeshPsnr", NumberOrNull(report.remesh_psnr)},
+          {"levels", std::move(levels)}};
+}
+
+Json ToJson(const PackReport& report) {
+  Json primitives = Json::array();
+  for (const PrimitiveReport& primitive : report.primitives) {
+    Json json = {{"mesh", primitive.mesh},
+                 {"primitive", primitive.primitive},
+                 {"name", primitive.name},
+                 {"storage", StorageName(primitive.storage)},
+                 {"reason", primitive.reason},
+                 {"bytesBefore", primitive.bytes_before},
+                 {"bytesAfter", primitive.bytes_after}};
+    if (primitive.storage == PrimitiveStorage::kProgressive) json["encode"] = ToJson(primitive.encode);
+    primitives.push_back(std::move(json));
+  }
+  return {{"primitives", std::move(primitives)}, {"notes", report.notes}};
+}
+
+Json ToJson(const StreamInfo& stream) {
+  Json levels = Json::array();
+  for (const StreamInfo::Level& level : stream.levels) {
+    Json json = {{"vertices", level.vertices}, {"triangles", level.triangles}, {"bytes", level.bytes}};
+    json["error"] = level.error.has_value() ? NumberOrNull(*level.error) : Json();
+    json["psnr"] = level.error.has_value() ? NumberOrNull(Psnr(*level.error, stream.diagonal)) : Json();
+    json["available"] = level.available;
+    levels.push_back(std::move(json));
+  }
+  return {{"mesh", stream.mesh},
+          {"primitive", stream.primitive},
+          {"name", stream.name},
+          {"diagonal", NumberOrNull(stream.diagonal)},
+          {"levels", std::move(levels)}};
+}
+
+void PrintJson(const Json& json) {
+  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+}
+
+void PrintTable(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
+  std::vector<size_t> widths;
+  for (const std::string& cell : header) widths.push_back(cell.size());
+  for (const auto& row : rows) {
+    for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  const auto print_row = [&](const std::vector<std::string>& row) {
+    for (size_t i = 0; i < row.size(); ++i)
+      std::printf("%s%*s", i == 0 ? "" : "  ", static_cast<int>(widths[i]), row[i].c_str());
+    std::printf("\n");
+  };
+  print_row(header);
+  for (const auto& row : rows) print_row(row);
+}
+
+std::string Fixed(double value, int decimals) {
+  char text[64];
+  std::snprintf(text, sizeof(text), "%.*f", decimals, value);
+  return text;
+}
+
+std::string Short(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof(text), "%.*g", digits, value);
+  return text;
+}
+
+const char* StorageName(PrimitiveStorage storage) {
+  switch (storage) {
+    case PrimitiveStorage::kProgressive:
+      return "progressive";
+    case PrimitiveStorage::kDraco:
+      return "draco";
+    case PrimitiveStorage::kUntouched:
+      return "untouched";
+  }
+  return "";
+}
+
+const char* FallbackName(Fallback fallback) {
+  switch (fallback) {
+    case Fallback::kDraco:
+      return "draco";
+    case Fallback::kPlain:
+      return "plain";
+    case Fallback::kNone:
+      return "none";
+  }
+  return "";
+}
+
+void PrintLevels(const EncodeReport& report) {
+  std::vector<std::vector<std::string>> rows;
+  for (size_t i = 0; i < report.levels.size(); ++i) {
+    const LevelReport& level = report.levels[i];
+    const double bpv =
+        8.0 * static_cast<double>(level.bytes) / static_cast<double>(std::max<uint64_t>(report.input_vertices, 1));
+    rows.push_back({std::to_string(i), std::to_string(level.triangles), std::to_string(level.bytes), Fixed(bpv, 3),
+                    Short(level.error, 4), Fixed(level.psnr, 2)});
+  }
+  PrintTable({"level", "triangles", "bytes", "b/iv", "error", "PSNR dB"}, rows);
+}
+
+void PrintLevels(const StreamInfo& stream) {
+  std::vector<std::vector<std::string>> rows;
+  for (size_t i = 0; i < stream.levels.size(); ++i) {
+    const StreamInfo::Level& level = stream.levels[i];
+    rows.push_back({std::to_string(i), std::to_string(level.vertices), std::to_string(level.triangles),
+                    std::to_string(level.bytes), level.error.has_value() ? Short(*level.error, 4) : "-",
+                    level.error.has_value() ? Fixed(Psnr(*level.error, stream.diagonal), 2) : "-",
+                    level.available ? "yes" : "no"});
+  }
+  PrintTable({"level", "vertices", "triangles", "bytes", "error", "PSNR dB", "in file"}, rows);
+}
+
+}  // namespace lacerta::cli

@@ -1,0 +1,257 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <ostream>
+
+#include "document/gltf_document.h"
+#include "document/normals.h"
+#include "extension/progressive.h"
+#include "gltf/test_assets.h"
+#include "lacerta/file_io.h"
+#include "lacerta/gltf.h"
+
+namespace lacerta {
+namespace {
+
+using ::testing::AllOf;
+using testing::AssetBuilder;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using testing::JsonOf;
+using ::testing::Not;
+using testing::WavySphere;
+
+PackOptions Options(Fallback fallback) {
+  PackOptions options;
+  options.encode.target = {EncodeTarget::Kind::kPsnr, 55.0};
+  options.fallback = fallback;
+  return options;
+}
+
+std::vector<std::string> Strings(const Json& json, const char* key) {
+  return json.contains(key) ? json[key].get<std::vector<std::string>>() : std::vector<std::string>();
+}
+
+// Two smooth balls, one of them with normals, and a pair of primitives.
+Bytes MixedAsset() {
+  AssetBuilder builder;
+  const TriangleMesh ball = WavySphere(16, 24);
+  builder.AddMesh("ball", Json::array({builder.Primitive(ball)}));
+  Json with_normals = builder.Primitive(WavySphere(20, 30, {3, 0, 0}));
+  with_normals["attributes"]["NORMAL"] = builder.AddFloats(DeriveNormals(WavySphere(20, 30, {3, 0, 0})), false);
+  builder.AddMesh("smooth", Json::array({with_normals}));
+  builder.AddMesh("pair", Json::array({builder.Primitive(ball), builder.Primitive(WavySphere(16, 24, {0, 3, 0}))}));
+  return builder.Glb();
+}
+
+TEST(Pack, DracoFallbackSharesTheBytesOfTheBase) {
+  const auto packed = PackGltf(MixedAsset(), Options(Fallback::kDraco));
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  const GltfDocument document = ParseGltf(packed.value().glb, "").value();
+  const Json& json = document.json;
+  EXPECT_THAT(Strings(json, "extensionsUsed"), AllOf(Contains(kDracoName), Contains(kProgressiveName)));
+  EXPECT_THAT(Strings(json, "extensionsRequired"), AllOf(Contains(kDracoName), Not(Contains(kProgressiveName))));
+  const Progressive progressive = ParseProgressive(document).value();
+  ASSERT_EQ(progressive.streams.size(), 2u);
+  EXPECT_FALSE(progressive.streams[0].smooth_normals);
+  EXPECT_TRUE(progressive.streams[1].smooth_normals);
+  const Span<const uint8_t> data = BufferViewBytes(document, progressive.data).value();
+  for (uint64_t m = 0; m < 2; ++m) {
+    const Json& primitive = json["meshes"][m]["primitives"][0];
+    EXPECT_EQ(primitive["attributes"].size(), 1u);
+    const Json& extensions = primitive["extensions"];
+    EXPECT_EQ(extensions[kProgressiveName], (Json{{"stream", m}, {"group", 0}}));
+    const Span<const uint8_t> base = BufferViewBytes(document, extensions[kDracoName]["bufferView"]).value();
+    const GatheredStream stream = GatherStream(document, progressive, m).value();
+    EXPECT_EQ(base.data(), data.data() + stream.base_offset);  // the very bytes, not a copy
+    EXPECT_EQ(base.size(), stream.base_length);
+    const Json& position = json["accessors"][primitive["attributes"]["POSITION"].get<size_t>()];
+    EXPECT_EQ(position["count"], progressive.streams[m].vertex_counts[0]);
+    EXPECT_FALSE(position.contains("bufferView"));
+    EXPECT_TRUE(position.contains("min"));
+  }
+  // The refinements end the file.
+  EXPECT_EQ(data.data() + data.size(), document.buffers[0].data() + document.buffers[0].size());
+  EXPECT_EQ(progressive.segments[0].stream, 0u);
+  EXPECT_EQ(progressive.segments[1].stream, 1u);
+}
+
+TEST(Pack, TheOtherFallbacks) {
+  const Bytes asset = MixedAsset();
+  const auto plain = PackGltf(asset, Options(Fallback::kPlain));
+  ASSERT_TRUE(plain.ok()) << plain.status().message();
+  Json json = JsonOf(plain.value().glb);
+  EXPECT_FALSE(json.contains("extensionsRequired"));
+  EXPECT_THAT(Strings(json, "extensionsUsed"), ::testing::ElementsAre(kProgressiveName));
+  const Json& position = json["accessors"][json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].get<size_t>()];
+  EXPECT_TRUE(position.contains("bufferView"));
+  EXPECT_TRUE(json["meshes"][1]["primitives"][0]["attributes"].contains("NORMAL"));
+  EXPECT_EQ(plain.value().report.primitives[2].storage, PrimitiveStorage::kUntouched);
+
+  const auto none = PackGltf(asset, Options(Fallback::kNone));
+  ASSERT_TRUE(none.ok()) << none.status().message();
+  json = JsonOf(none.value().glb);
+  EXPECT_THAT(Strings(json, "extensionsRequired"), Contains(kProgressiveName));
+  EXPECT_FALSE(json["meshes"][0]["primitives"][0]["extensions"].contains(kDracoName));
+}
+
+TEST(Pack, ReportsEveryPrimitive) {
+  const auto packed = PackGltf(MixedAsset(), Options(Fallback::kDraco));
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  const std::vector<PrimitiveReport>& report = packed.value().report.primitives;
+  ASSERT_EQ(report.size(), 4u);
+  EXPECT_EQ(report[0].storage, PrimitiveStorage::kProgressive);
+  EXPECT_EQ(report[1].storage, PrimitiveStorage::kProgressive);
+  EXPECT_EQ(report[1].name, "smooth");
+  EXPECT_EQ(report[2].storage, PrimitiveStorage::kDraco);
+  EXPECT_THAT(report[2].reason, HasSubstr("2 primitives"));
+  EXPECT_EQ(report[3].primitive, 1u);
+  for (const PrimitiveReport& primitive : report) EXPECT_LT(primitive.bytes_after, primitive.bytes_before);
+}
+
+TEST(Pack, EverythingElsePassesThrough) {
+  const Bytes asset = MixedAsset();
+  const Json before = JsonOf(asset);
+  const Json after = JsonOf(PackGltf(asset, Options(Fallback::kDraco)).value().glb);
+  for (const char* key : {"asset", "scene", "scenes", "nodes", "materials", "animations", "unknownToEveryone"}) {
+    EXPECT_EQ(after[key], before[key]) << key;
+  }
+  EXPECT_EQ(after["meshes"][0]["name"], "ball");
+  EXPECT_EQ(after["meshes"][2]["primitives"][1]["material"], 0);
+}
+
+TEST(Pack, ImagesAnimationsAndMorphTargetsStayByteForByte) {
+  AssetBuilder builder;
+  const TriangleMesh ball = WavySphere(16, 24);
+  Json morph = builder.Primitive(ball);
+  morph["targets"] = Json::array({{{"POSITION", builder.AddFloats(ball.positions, true)}}});
+  builder.AddMesh("morph", Json::array({morph}));
+  builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(20, 30))}));
+  GltfDocument& document = builder.document();
+  const Bytes image = {0x89, 'P', 'N', 'G', 1, 2, 3};
+  document.json["images"] =
+      Json::array({{{"mimeType", "image/png"},
+                    {"bufferView", AddBufferView(AddBuffer(image, &document), 0, image.size(), &document)}}});
+  const Bytes glb = builder.Glb();
+  const auto packed = PackGltf(glb, Options(Fallback::kDraco));
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  EXPECT_EQ(packed.value().report.primitives[0].storage, PrimitiveStorage::kUntouched);
+  EXPECT_THAT(packed.value().report.primitives[0].reason, HasSubstr("morph targets"));
+  const GltfDocument before = ParseGltf(glb, "").value();
+  const GltfDocument after = ParseGltf(packed.value().glb, "").value();
+  EXPECT_EQ(after.json["meshes"][0], before.json["meshes"][0]);
+  for (const uint64_t accessor : {0, 1, 2}) {
+    EXPECT_EQ(ReadAccessor(after, accessor).value().bytes, ReadAccessor(before, accessor).value().bytes);
+  }
+  const Span<const uint8_t> kept = BufferViewBytes(after, after.json["images"][0]["bufferView"]).value();
+  EXPECT_EQ(Bytes(kept.begin(), kept.end()), image);
+}
+
+TEST(Pack, SharedAccessorsAndInstances) {
+  AssetBuilder builder;
+  const Json primitive = builder.Primitive(WavySphere(16, 24));
+  builder.AddMesh("one", Json::array({primitive}));
+  Json blue = primitive;
+  blue["material"] = 1;
+  // Any number in an extension that nobody knows might be an accessor, which then stays.
+  builder.document().json["materials"] = {{{"name", "red"}}, {{"name", "blue"}}};
+  builder.AddMesh("same surface", Json::array({blue}));
+  const auto packed = PackGltf(builder.Glb(), Options(Fallback::kDraco));
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  EXPECT_EQ(packed.value().report.primitives.size(), 1u);  // stored once
+  const Json json = JsonOf(packed.value().glb);
+  EXPECT_EQ(json["meshes"][0]["primitives"][0]["attributes"], json["meshes"][1]["primitives"][0]["attributes"]);
+  EXPECT_EQ(json["meshes"][1]["primitives"][0]["material"], 1);
+  EXPECT_EQ(json["accessors"].size(), 2u);
+
+  // An accessor that an untouched primitive uses as well must keep its values.
+  AssetBuilder sharing;
+  Json points = sharing.Primitive(WavySphere(16, 24));
+  const Json triangles = points;
+  points["mode"] = 0;
+  sharing.AddMesh("surface", Json::array({triangles}));
+  sharing.AddMesh("points", Json::array({points}));
+  const Bytes glb = sharing.Glb();
+  const auto shared = PackGltf(glb, Options(Fallback::kDraco));
+  ASSERT_TRUE(shared.ok()) << shared.status().message();
+  EXPECT_EQ(shared.value().report.primitives[0].storage, PrimitiveStorage::kProgressive);
+  const GltfDocument after = ParseGltf(shared.value().glb, "").value();
+  EXPECT_EQ(ReadAccessor(after, after.json["meshes"][1]["primitives"][0]["attributes"]["POSITION"]).value().bytes,
+            ReadAccessor(ParseGltf(glb, "").value(), 0).value().bytes);
+}
+
+TEST(Pack, BadInputIsNamed) {
+  AssetBuilder builder;
+  builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(16, 24))}));
+  GltfDocument& document = builder.document();
+  const auto message_with = [&](size_t buffer, size_t offset, const void* value, size_t size) {
+    const Bytes saved = document.buffers[buffer];
+    std::memcpy(document.buffers[buffer].data() + offset, value, size);
+    const Status status = PackGltf(builder.Glb(), Options(Fallback::kDraco)).status();
+    document.buffers[buffer] = saved;
+    EXPECT_EQ(status.code(), StatusCode::kInvalidData);
+    return status.message();
+  };
+  const float infinite = INFINITY;
+  EXPECT_THAT(message_with(0, 12 * 7, &infinite, 4),
+              AllOf(HasSubstr("mesh 0 (ball), primitive 0"), HasSubstr("vertex 7"), HasSubstr("not finite")));
+  const uint16_t far = 60000;
+  EXPECT_THAT(message_with(1, 2 * 5, &far, 2),
+              AllOf(HasSubstr("accessor 1"), HasSubstr("index 60000"), HasSubstr("position 5")));
+  EXPECT_EQ(PackGltf(PackGltf(builder.Glb(), Options(Fallback::kDraco)).value().glb, Options(Fallback::kDraco))
+                .status()
+                .code(),
+            StatusCode::kUnsupported);
+  EXPECT_EQ(PackMesh(TriangleMesh(), "", Options(Fallback::kDraco)).status().code(), StatusCode::kInvalidData);
+  PackOptions custom = Options(Fallback::kDraco);
+  custom.encode.form = StreamForm::kCustom;
+  EXPECT_EQ(PackGltf(builder.Glb(), custom).status().code(), StatusCode::kInvalidArgument);
+}
+
+// One asset of every class: what is in it, and how its primitives end.
+struct AssetClass {
+  const char* file;
+  PrimitiveStorage storage;
+};
+
+void PrintTo(const AssetClass& asset, std::ostream* out) { *out << asset.file; }
+
+class PackAssets : public ::testing::TestWithParam<AssetClass> {};
+
+TEST_P(PackAssets, PacksAndUnpacks) {
+  const std::string path = std::string(LACERTA_TEST_DATA_DIR) + "/" + GetParam().file;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << GetParam().file << " is not there";
+  const Bytes asset = ReadFile(path).value();
+  const auto packed = PackGltf(asset, Options(Fallback::kDraco));
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  for (const PrimitiveReport& primitive : packed.value().report.primitives) {
+    EXPECT_EQ(primitive.storage, GetParam().storage) << primitive.reason;
+    EXPECT_FALSE(primitive.reason.empty());
+    EXPECT_LE(primitive.bytes_after, primitive.bytes_before);
+  }
+  EXPECT_LE(packed.value().glb.size(), asset.size());
+  const auto unpacked = UnpackGltf(packed.value().glb, {});
+  ASSERT_TRUE(unpacked.ok()) << unpacked.status().message();
+  EXPECT_THAT(unpacked.value().notes, ::testing::IsEmpty());
+  const auto before = FlattenGltf(asset, {});
+  const auto after = FlattenGltf(unpacked.value().glb, {});
+  ASSERT_TRUE(before.ok() && after.ok());
+  EXPECT_LE(after.value().mesh.triangles.size(), before.value().mesh.triangles.size());  // degenerate ones may go
+  EXPECT_GE(after.value().mesh.triangles.size(), before.value().mesh.triangles.size() * 8 / 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Classes, PackAssets,
+                         ::testing::Values(AssetClass{"BoomBox.glb", PrimitiveStorage::kDraco},    // tangents
+                                           AssetClass{"CesiumMan.glb", PrimitiveStorage::kDraco},  // skin
+                                           AssetClass{"Fox.glb", PrimitiveStorage::kDraco},        // not indexed
+                                           AssetClass{"MorphStressTest.glb", PrimitiveStorage::kUntouched},
+                                           AssetClass{"CesiumMilkTruck.glb", PrimitiveStorage::kDraco},  // instances
+                                           AssetClass{"spot_textured.glb", PrimitiveStorage::kDraco}),
+                         [](const auto& asset) {
+                           return std::string(asset.param.file, std::strcspn(asset.param.file, "."));
+                         });
+
+}  // namespace
+}  // namespace lacerta

@@ -1,0 +1,217 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "document/gltf_document.h"
+#include "extension/progressive.h"
+#include "gltf/test_assets.h"
+#include "gltf/test_bytes.h"
+#include "lacerta/gltf.h"
+#include "lacerta/surface_distance.h"
+
+namespace lacerta {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::JsonOf;
+using testing::WavySphere;
+
+PackResult Packed(Fallback fallback) {
+  PackOptions options;
+  options.encode.target = {EncodeTarget::Kind::kPsnr, 55.0};
+  options.fallback = fallback;
+  return PackMesh(WavySphere(24, 36), "ball", options).value();
+}
+
+ProgressiveSurface Read(const Bytes& glb, std::optional<int> level = std::nullopt) {
+  UnpackOptions options;
+  options.level = level;
+  const auto surfaces = ReadProgressive(glb, options);
+  EXPECT_TRUE(surfaces.ok()) << surfaces.status().message();
+  return surfaces.ok() && surfaces.value().size() == 1 ? surfaces.value()[0] : ProgressiveSurface();
+}
+
+TEST(Unpack, EveryLevelOfEveryFallback) {
+  for (const Fallback fallback : {Fallback::kDraco, Fallback::kPlain, Fallback::kNone}) {
+    const PackResult packed = Packed(fallback);
+    const EncodeReport& report = packed.report.primitives[0].encode;
+    ASSERT_EQ(packed.report.primitives[0].storage, PrimitiveStorage::kProgressive);
+    for (size_t level = 0; level < report.levels.size(); ++level) {
+      const ProgressiveSurface surface = Read(packed.glb, static_cast<int>(level));
+      EXPECT_FALSE(surface.from_fallback);
+      EXPECT_THAT(surface.note, IsEmpty());
+      EXPECT_EQ(surface.level, static_cast<int>(level));
+      EXPECT_EQ(surface.num_levels + 1, static_cast<int>(report.levels.size()));
+      EXPECT_EQ(surface.surface.triangles.size(), report.levels[level].triangles);
+      UnpackOptions options;
+      options.level = static_cast<int>(level);
+      const auto plain = UnpackGltf(packed.glb, options);
+      ASSERT_TRUE(plain.ok()) << plain.status().message();
+      EXPECT_FALSE(JsonOf(plain.value().glb).contains("extensionsUsed"));
+      const auto flat = FlattenGltf(plain.value().glb, {});
+      ASSERT_TRUE(flat.ok()) << flat.status().message();
+      EXPECT_EQ(flat.value().mesh.positions, surface.surface.positions);
+      EXPECT_EQ(flat.value().mesh.triangles, surface.surface.triangles);
+    }
+  }
+}
+
+TEST(Unpack, FallbackAndBaseAgree) {
+  const ProgressiveSurface base = Read(Packed(Fallback::kDraco).glb, 0);
+  Json json;
+  GltfDocument document = ParseGltf(Packed(Fallback::kDraco).glb, "").value();
+  document.json["extensions"][kProgressiveName]["version"] = 99;  // force the fallback
+  const ProgressiveSurface fallback = Read(FormatGlb(document));
+  EXPECT_TRUE(fallback.from_fallback);
+  EXPECT_THAT(fallback.note, AllOf(HasSubstr("version 99"), HasSubstr("fallback")));
+  EXPECT_EQ(fallback.surface.positions, base.surface.positions);
+  EXPECT_EQ(fallback.surface.triangles, base.surface.triangles);
+}
+
+TEST(Unpack, AnEditedAssetShowsItsFallback) {
+  const auto note_after = [](Fallback fallback, const std::string& pointer, const Json& value) {
+    GltfDocument document = ParseGltf(Packed(fallback).glb, "").value();
+    document.json[Json::json_pointer(pointer)] = value;
+    const ProgressiveSurface surface = Read(FormatGlb(document));
+    EXPECT_TRUE(surface.from_fallback) << pointer;
+    EXPECT_FALSE(surface.surface.triangles.empty());
+    return surface.note;
+  };
+  const std::string extension = std::string("/extensions/") + kProgressiveName;
+  const std::string primitive = std::string("/meshes/0/primitives/0/extensions/") + kProgressiveName;
+  EXPECT_THAT(note_after(Fallback::kPlain, "/accessors/0/max/0", 77.0), HasSubstr("edited"));
+  EXPECT_THAT(note_after(Fallback::kDraco, "/accessors/0/min/0", -77.0), HasSubstr("edited"));
+  EXPECT_THAT(note_after(Fallback::kDraco, extension + "/data", 1000), HasSubstr("bufferView 1000"));
+  EXPECT_THAT(note_after(Fallback::kDraco, extension + "/segments/byteLength/0", 3), Not(IsEmpty()));
+  EXPECT_THAT(note_after(Fallback::kDraco, extension + "/streams/0/triangleCounts", Json::array()),
+              HasSubstr("stream 0"));
+  EXPECT_THAT(note_after(Fallback::kDraco, primitive + "/stream", 4), HasSubstr("stream 4"));
+  EXPECT_THAT(note_after(Fallback::kDraco, primitive + "/group", 1), HasSubstr("group 1"));
+  GltfDocument gone = ParseGltf(Packed(Fallback::kPlain).glb, "").value();
+  gone.json.erase("extensions");
+  EXPECT_TRUE(Read(FormatGlb(gone)).from_fallback);
+}
+
+TEST(Unpack, WithoutFallbackItFailsByName) {
+  GltfDocument document = ParseGltf(Packed(Fallback::kNone).glb, "").value();
+  document.json["extensions"][kProgressiveName]["data"] = 1000;
+  const Status status = UnpackGltf(FormatGlb(document), {}).status();
+  EXPECT_EQ(status.code(), StatusCode::kInvalidData);
+  EXPECT_THAT(status.message(), AllOf(HasSubstr("mesh 0 (ball)"), HasSubstr("bufferView 1000")));
+}
+
+TEST(Unpack, EveryPrefixThatHoldsTheBaseGivesAMesh) {
+  const PackResult packed = Packed(Fallback::kDraco);
+  const StreamInfo info = DescribeGltf(packed.glb, "").value().streams[0];
+  const uint64_t padding = 3;
+  const uint64_t data_begin = packed.glb.size() - info.levels.back().bytes;  // up to the padding at the end
+  int last_level = -1;
+  for (size_t length = 0; length <= packed.glb.size(); length += 1 + length % 7) {
+    const Bytes prefix(packed.glb.begin(), packed.glb.begin() + static_cast<std::ptrdiff_t>(length));
+    const auto surfaces = ReadProgressive(prefix, {});
+    if (length >= data_begin + info.levels[0].bytes) {
+      ASSERT_TRUE(surfaces.ok()) << length << surfaces.status().message();
+      const ProgressiveSurface& surface = surfaces.value()[0];
+      EXPECT_FALSE(surface.from_fallback);
+      EXPECT_GE(surface.level, last_level);
+      last_level = surface.level;
+      EXPECT_EQ(surface.note.empty(), surface.level == surface.num_levels) << surface.note;
+    } else if (length + padding < data_begin + info.levels[0].bytes) {
+      EXPECT_FALSE(surfaces.ok()) << length;
+    }
+  }
+  EXPECT_EQ(static_cast<size_t>(Read(packed.glb).level) + 1, info.levels.size());
+}
+
+TEST(Unpack, DamagedBytesNeverCrash) {
+  const Bytes glb = Packed(Fallback::kDraco).glb;
+  size_t notes = 0;
+  for (size_t i = 0; i < glb.size(); i += 3) {
+    Bytes mutant = glb;
+    mutant[i] = static_cast<uint8_t>(mutant[i] ^ 0x55);
+    const auto surfaces = ReadProgressive(mutant, {});
+    if (!surfaces.ok()) {
+      EXPECT_FALSE(surfaces.status().message().empty());
+    } else {
+      for (const ProgressiveSurface& surface : surfaces.value()) {
+        notes += surface.note.empty() ? 0 : 1;
+        for (const Triangle& triangle : surface.surface.triangles) {
+          for (const uint32_t index : triangle) ASSERT_LT(index, surface.surface.positions.size());
+        }
+      }
+    }
+  }
+  EXPECT_GT(notes, 0u);
+}
+
+TEST(Flatten, AppliesTransformsAndMirrors) {
+  testing::AssetBuilder builder;
+  const TriangleMesh ball = WavySphere(4, 6);
+  builder.AddMesh("ball", Json::array({builder.Primitive(ball)}));
+  Json& nodes = builder.document().json["nodes"];
+  nodes[0]["scale"] = {-1, 2, 1};
+  nodes[0]["rotation"] = {0, 0, 0.7071067811865476, 0.7071067811865476};  // x to y, y to -x
+  nodes[0]["translation"] = {10, 0, 0};
+  nodes.push_back({{"children", {0}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1}}});
+  builder.document().json["scenes"][0]["nodes"] = {1};
+  const auto flat = FlattenGltf(builder.Glb(), {});
+  ASSERT_TRUE(flat.ok()) << flat.status().message();
+  for (size_t v = 0; v < ball.positions.size(); ++v) {
+    const Vec3f expected = {10 - 2 * ball.positions[v].y, -ball.positions[v].x, 5 + ball.positions[v].z};
+    EXPECT_LT(Norm(flat.value().mesh.positions[v] - expected), 1e-5f);
+  }
+  const Triangle& before = ball.triangles[0];
+  EXPECT_EQ(flat.value().mesh.triangles[0], (Triangle{before[0], before[2], before[1]}));
+}
+
+TEST(Flatten, RefusesCyclesAndTooManyInstances) {
+  testing::AssetBuilder builder;
+  builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(4, 6))}));
+  Json& nodes = builder.document().json["nodes"];
+  nodes[0]["children"] = {0};
+  EXPECT_THAT(FlattenGltf(builder.Glb(), {}).status().message(), HasSubstr("node 0"));
+  nodes[0]["children"] = {9};
+  EXPECT_THAT(FlattenGltf(builder.Glb(), {}).status().message(), HasSubstr("node 9"));
+  nodes[0].erase("children");
+  UnpackOptions options;
+  options.limits.max_triangles = 10;
+  EXPECT_EQ(FlattenGltf(builder.Glb(), options).status().code(), StatusCode::kLimitExceeded);
+}
+
+TEST(Describe, TellsWhatIsInside) {
+  const PackResult packed = Packed(Fallback::kPlain);
+  const auto info = DescribeGltf(packed.glb, "");
+  ASSERT_TRUE(info.ok()) << info.status().message();
+  EXPECT_EQ(info.value().fallback, Fallback::kPlain);
+  ASSERT_EQ(info.value().streams.size(), 1u);
+  const StreamInfo& stream = info.value().streams[0];
+  EXPECT_EQ(stream.name, "ball");
+  const EncodeReport& report = packed.report.primitives[0].encode;
+  ASSERT_EQ(stream.levels.size(), report.levels.size());
+  for (size_t i = 0; i < report.levels.size(); ++i) {
+    EXPECT_EQ(stream.levels[i].triangles, report.levels[i].triangles);
+    EXPECT_EQ(stream.levels[i].bytes, report.levels[i].bytes);
+    EXPECT_TRUE(stream.levels[i].available);
+  }
+}
+
+TEST(Describe, BareStreamsAgreeWithTheirReport) {
+  EncodeOptions options;
+  options.target = {EncodeTarget::Kind::kPsnr, 55.0};
+  for (const StreamForm form : {StreamForm::kDraco, StreamForm::kCustom}) {
+    options.form = form;
+    const auto encoded = EncodeMesh(WavySphere(24, 36), options);
+    ASSERT_TRUE(encoded.ok()) << encoded.status().message();
+    const auto info = DescribeStream(encoded.value().stream, {});
+    ASSERT_TRUE(info.ok()) << info.status().message();
+    ASSERT_EQ(info.value().levels.size(), encoded.value().report.levels.size());
+    for (size_t i = 0; i < info.value().levels.size(); ++i) {
+      EXPECT_EQ(info.value().levels[i].vertices, encoded.value().report.levels[i].vertices);
+      EXPECT_EQ(info.value().levels[i].triangles, encoded.value().report.levels[i].triangles);
+    }
+    EXPECT_EQ(info.value().levels.back().bytes, encoded.value().stream.size());
+  }
+}
+
+}  // namespace
+}  // namespace lacerta
