@@ -17,12 +17,16 @@ struct LocalFrame {
   Vec3f ToWorld(const Vec3f& d) const { return tangent1 * d.x + tangent2 * d.y + normal * d.z; }
 };
 
-// Frame of the midpoint of every edge of `coarse`: #E.
+// Frame of the midpoint of one edge of `coarse`.
 //   normal    of the predicted fine mesh at the midpoint: the normalized sum of the area vectors of its fine triangles
 //   tangent1  direction of the edge (second end minus first), made orthogonal to the normal
 //   tangent2  normal x tangent1
 // positions: #V of the coarse level; predicted_midpoints: #E from PredictMidpoints. Where the surface degenerates to a
 // line or point the axes x, y, z stand in, so that a frame is always orthonormal.
+LocalFrame LocalFrameAt(const Topology& coarse, const std::vector<Vec3f>& positions,
+                        const std::vector<Vec3f>& predicted_midpoints, uint32_t edge);
+
+// Frames of all edges: #E.
 std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,
                                            const std::vector<Vec3f>& predicted_midpoints);
 

@@ -9,15 +9,18 @@ namespace lacerta {
 void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const LevelSteps& steps,
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
   const std::vector<Vec3f> midpoints = PredictMidpoints(coarse, table, *positions);
-  const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, *positions, midpoints);
-  positions->reserve(positions->size() + midpoints.size());
+  std::vector<Vec3f> details(midpoints.size());  // apart from `positions`, on which the frames depend
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-    const Vec3f detail = {
-        Dequantize(quantized.tangential[size_t{2} * e], steps.tangential_step, steps.tangential_bias),
-        Dequantize(quantized.tangential[size_t{2} * e + 1], steps.tangential_step, steps.tangential_bias),
-        Dequantize(quantized.normal[e], steps.normal_step, steps.normal_bias)};
-    positions->push_back(midpoints[e] + frames[e].ToWorld(detail));
+    const int32_t q1 = quantized.tangential[size_t{2} * e], q2 = quantized.tangential[size_t{2} * e + 1];
+    const int32_t qn = quantized.normal[e];
+    if (q1 == 0 && q2 == 0 && qn == 0) continue;  // most of a fine level: no frame needed
+    const Vec3f detail = {Dequantize(q1, steps.tangential_step, steps.tangential_bias),
+                          Dequantize(q2, steps.tangential_step, steps.tangential_bias),
+                          Dequantize(qn, steps.normal_step, steps.normal_bias)};
+    details[e] = LocalFrameAt(coarse, *positions, midpoints, e).ToWorld(detail);
   }
+  positions->reserve(positions->size() + midpoints.size());
+  for (uint32_t e = 0; e < coarse.num_edges(); ++e) positions->push_back(midpoints[e] + details[e]);
 }
 
 }  // namespace lacerta

@@ -47,10 +47,11 @@ EncodedMesh FromZeroLevel(ZeroLevelStream zero, EncodeReport report, std::string
   return {std::move(zero.stream), {size}, std::move(report)};
 }
 
-StatusOr<EncodedMesh> FromRefinement(const SurfaceDistanceMeter& meter, const MeasuredStream& coded, EncodeReport report) {
+StatusOr<EncodedMesh> FromRefinement(const SurfaceDistanceMeter& meter, const ChosenStream& chosen, EncodeReport report) {
   report.progressive = true;
-  report.normal_share = coded.normal_share;
-  report.remesh_psnr = coded.remesh_psnr;
+  report.normal_share = chosen.normal_share;
+  report.remesh_psnr = chosen.remesh_psnr;
+  const MeasuredStream& coded = chosen.measured;
   if (!coded.meets_target) report.reason = "the target is out of reach; this is the nearest found";
   LACERTA_RETURN_IF_ERROR(ReportLevels(meter, coded.stream, &report));
   EncodedMesh result;
@@ -98,11 +99,11 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   progress(0.0, "simplifying");
   const CollapseHistory history = Decimate(mesh, DecimateOptions());
   const InputSurface surface(mesh);
-  LACERTA_ASSIGN_OR_RETURN(const MeasuredStream coded, CodeAtTarget(surface, history, meter, target, options.mode, options.progress));
+  LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen, CodeAtTarget(surface, history, meter, target, options.mode, options.progress));
   progress(0.95, "comparing with Draco");
-  LACERTA_ASSIGN_OR_RETURN(std::optional<ZeroLevelStream> simpler, SimplerIfBetter(mesh, history, meter, target, coded));
+  LACERTA_ASSIGN_OR_RETURN(std::optional<ZeroLevelStream> simpler, SimplerIfBetter(mesh, history, meter, target, chosen.measured));
   if (simpler) return InForm(options.form, FromZeroLevel(std::move(*simpler), std::move(report), "a simplified mesh in stock Draco form is smaller"));
-  LACERTA_ASSIGN_OR_RETURN(EncodedMesh result, FromRefinement(meter, coded, std::move(report)));
+  LACERTA_ASSIGN_OR_RETURN(EncodedMesh result, FromRefinement(meter, chosen, std::move(report)));
   progress(1.0, "done");
   return InForm(options.form, std::move(result));
 }

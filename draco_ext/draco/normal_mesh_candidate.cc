@@ -79,6 +79,7 @@ StatusOr<CodedStream> NormalMeshCandidate::Code(double lambda, EncodeMode mode) 
   stream.part_sizes.insert(stream.part_sizes.end(), refinement.part_sizes.begin(), refinement.part_sizes.end());
   stream.refinement = std::move(refinement.bytes);
   stream.decoded = {normal_mesh_.mesh.base_triangles, num_base_vertices(), target_.num_levels(), Synthesize(target_, coded)};
+  stream.plane_distortion = PlaneDistortion(target_, stream.decoded.positions);
   stream.triangles = target_.topologies.back().triangles;
   return stream;
 }

@@ -23,6 +23,7 @@ struct CodedStream {
   std::vector<size_t> part_sizes;    // of the base section, then as in RefinementBytes
   SemiRegularMesh decoded;
   std::vector<Triangle> triangles;   // of the finest level
+  double plane_distortion = 0;       // PlaneDistortion: about the squared distance to the unquantized remesh
 
   size_t size() const { return base.size() + refinement.size(); }
   TriangleMesh FinestMesh() const { return {decoded.positions, triangles}; }

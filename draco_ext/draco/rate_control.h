@@ -1,42 +1,32 @@
-// Meeting a target: the search over slopes of the rate-distortion curve for one candidate, and over base sizes for the best
-// candidate.
+// Meeting a target with the base size that does best there.
 #ifndef LACERTA_DRACO_RATE_CONTROL_H_
 #define LACERTA_DRACO_RATE_CONTROL_H_
 
 #include <functional>
-#include <optional>
 
-#include "draco/normal_mesh_candidate.h"
+#include "draco/candidate_search.h"
 #include "lacerta/codec.h"
 #include "lacerta/surface_distance.h"
+#include "remesh/collapse_history.h"
+#include "remesh/input_surface.h"
 
 namespace lacerta {
-
-// A target with its unit resolved: either bytes or PSNR.
-struct ResolvedTarget {
-  bool is_rate = false;
-  double bytes = 0;  // where is_rate: at most
-  double psnr = 0;   // else: at least, dB
-};
 
 // Fails with kInvalidArgument where the value is not finite or out of a range that makes sense.
 StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_input_vertices);
 
-// A stream with what it was measured to be.
-struct MeasuredStream {
-  CodedStream stream;
-  double psnr = 0;            // dB, two-sided, to the input
-  double remesh_psnr = 0;     // of the unquantized remesh
-  double normal_share = 0;
-  bool meets_target = false;
+struct ChosenStream {
+  MeasuredStream measured;
+  double remesh_psnr = 0;   // dB, of the unquantized remesh
+  double normal_share = 0;  // NormalShare
 };
 
-// Codes the surface at the target with the base size that does best there: fewest bytes at a PSNR, highest PSNR at a number of
-// bytes. Where no candidate reaches the target the nearest one is returned, with meets_target false.
-// report: called with the share done, may be empty.
-StatusOr<MeasuredStream> CodeAtTarget(const InputSurface& surface, const CollapseHistory& history,
-                                      const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
-                                      const std::function<void(double, const char*)>& progress);
+// Codes the surface at the target: fewest bytes at a PSNR, highest PSNR at a number of bytes. Where no base size reaches the
+// target the nearest stream is returned, and says so.
+// progress: as in EncodeOptions, may be empty.
+StatusOr<ChosenStream> CodeAtTarget(const InputSurface& surface, const CollapseHistory& history,
+                                    const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
+                                    const std::function<void(double, const char*)>& progress);
 
 }  // namespace lacerta
 

@@ -1,0 +1,118 @@
+#include "draco/candidate_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace lacerta {
+namespace {
+
+// Typical slopes of the rate-distortion curve, to extrapolate from a single point; the search corrects them.
+constexpr double kPsnrPerLogLambda = -2.9;  // dB per unit of ln(lambda)
+constexpr double kLogBytesPerLogLambda = -0.32;
+constexpr double kLogBytesPerDecibel = kLogBytesPerLogLambda / kPsnrPerLogLambda;
+constexpr double kFirstLambda = 1.2e-4;  // of the squared distance aimed at, per bit
+constexpr double kUsualPsnr = 70;        // where to begin when only the rate is given
+
+// What counts as met: [psnr, psnr + 0.3) and (0.98, 1] of the bytes, with a margin for the noise of the measure.
+constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.24;
+constexpr double kBytesSlack = 0.018;
+constexpr int kScoreTries = 2;
+constexpr int kMeetTries = 14;
+
+}  // namespace
+
+CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double remesh_psnr, const SurfaceDistanceMeter& meter,
+                                 const ResolvedTarget& target, EncodeMode mode)
+    : candidate_(candidate), remesh_psnr_(remesh_psnr), meter_(meter), target_(target), mode_(mode) {
+  const double distance = DistanceOfPsnr(target_.is_rate ? kUsualPsnr : target_.psnr, meter_.diagonal());
+  start_ = std::log(kFirstLambda * distance * distance);
+}
+
+double CandidateSearch::Goal() const { return target_.is_rate ? std::log(target_.bytes) : target_.psnr; }
+
+double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogBytesPerLogLambda : kPsnrPerLogLambda; }
+
+StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, Distortion distortion) {
+  Attempt attempt;
+  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code(std::exp(log_lambda), mode_));
+  if (distortion == Distortion::kMeasured) {
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(attempt.stream.FinestMesh()));
+    attempt.psnr = Psnr(distance.Rms(), meter_.diagonal());
+  } else {
+    const double remesh_distance = DistanceOfPsnr(remesh_psnr_, meter_.diagonal());
+    attempt.psnr = Psnr(std::sqrt(attempt.stream.plane_distortion + remesh_distance * remesh_distance), meter_.diagonal());
+  }
+  attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : attempt.psnr;
+  values_[log_lambda] = attempt.value;
+  return attempt;
+}
+
+// The next ln(lambda) to try: between the two attempts around the goal, or beyond the nearest one.
+double CandidateSearch::NextGuess() const {
+  if (values_.empty()) return start_;
+  const double goal = Goal();
+  auto above = values_.end(), below = values_.end();  // of the goal; values fall as lambda grows
+  for (auto it = values_.begin(); it != values_.end(); ++it) {
+    if (it->second >= goal) above = it;
+    if (it->second < goal && below == values_.end()) below = it;
+  }
+  if (above != values_.end() && below != values_.end() && below->first > above->first) {
+    const double width = below->first - above->first;
+    const double share = (above->second - goal) / (above->second - below->second);
+    return above->first + width * std::clamp(share, 0.08, 0.92);
+  }
+  const auto nearest = above != values_.end() ? above : below;
+  const double step = (goal - nearest->second) / TypicalSlope();
+  // Beyond all attempts: somewhat farther than it seems, so that the goal gets bracketed.
+  return nearest->first + std::clamp(1.1 * step, -4.0, 4.0) + (step < 0 ? -0.02 : 0.02);
+}
+
+// A finer slope no longer raises the PSNR: the remesh itself is the limit.
+bool CandidateSearch::CannotReach() const {
+  if (target_.is_rate || values_.size() < 3) return false;
+  const auto first = values_.begin(), second = std::next(first);
+  return first->second < Goal() && (first->second - second->second) < 0.15 * (second->first - first->first);
+}
+
+StatusOr<double> CandidateSearch::Score() {
+  double score = std::numeric_limits<double>::infinity();
+  double least_miss = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kScoreTries; ++i) {
+    const double log_lambda = NextGuess();
+    LACERTA_ASSIGN_OR_RETURN(const Attempt attempt, Try(log_lambda, Distortion::kEstimated));
+    const double miss = Goal() - attempt.value;
+    if (std::fabs(miss) >= least_miss) continue;
+    least_miss = std::fabs(miss);
+    start_ = log_lambda + miss / TypicalSlope();
+    const double log_bytes = std::log(static_cast<double>(attempt.stream.size()));
+    score = target_.is_rate ? -(attempt.psnr + miss / kLogBytesPerDecibel) : log_bytes + kLogBytesPerDecibel * miss;
+  }
+  values_.clear();  // estimates: a good start, not to be mixed with what will be measured
+  return score;
+}
+
+StatusOr<MeasuredStream> CandidateSearch::Meet() {
+  const double low = target_.is_rate ? Goal() - kBytesSlack : Goal() + kPsnrMargin;
+  const double high = target_.is_rate ? Goal() : Goal() + kPsnrSlack;
+  const auto keeps_promise = [&](const Attempt& a) { return target_.is_rate ? a.value <= high : a.value >= target_.psnr; };
+  std::optional<Attempt> best;
+  for (int i = 0; i < kMeetTries && !CannotReach(); ++i) {
+    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(NextGuess(), target_.is_rate ? Distortion::kEstimated : Distortion::kMeasured));
+    const bool met = attempt.value >= low && attempt.value <= high;
+    const bool nearer = best && std::fabs(attempt.value - Goal()) < std::fabs(best->value - Goal());
+    if (!best || (keeps_promise(attempt) == keeps_promise(*best) ? nearer : keeps_promise(attempt))) best = std::move(attempt);
+    if (met) break;
+  }
+  MeasuredStream result;
+  result.meets_target = keeps_promise(*best);
+  result.psnr = best->psnr;
+  result.stream = std::move(best->stream);
+  return result;
+}
+
+}  // namespace lacerta

@@ -1,0 +1,67 @@
+// The search over slopes of the rate-distortion curve that makes one candidate meet a target.
+#ifndef LACERTA_DRACO_CANDIDATE_SEARCH_H_
+#define LACERTA_DRACO_CANDIDATE_SEARCH_H_
+
+#include <map>
+
+#include "draco/normal_mesh_candidate.h"
+#include "lacerta/codec.h"
+#include "lacerta/status.h"
+#include "lacerta/surface_distance.h"
+
+namespace lacerta {
+
+// A target with its unit resolved: either bytes or PSNR.
+struct ResolvedTarget {
+  bool is_rate = false;
+  double bytes = 0;  // where is_rate: at most
+  double psnr = 0;   // else: at least, dB
+};
+
+// A stream with what is known of its quality.
+struct MeasuredStream {
+  CodedStream stream;
+  double psnr = 0;  // dB, two-sided, to the input: measured at a PSNR target, estimated at a rate
+  bool meets_target = false;
+};
+
+// All referenced objects must outlive the search.
+class CandidateSearch {
+ public:
+  // remesh_psnr: of the unquantized remesh, dB.
+  CandidateSearch(const NormalMeshCandidate& candidate, double remesh_psnr, const SurfaceDistanceMeter& meter,
+                  const ResolvedTarget& target, EncodeMode mode);
+
+  // Codes near the target with a few attempts and extrapolates to it: ln(bytes) at the PSNR, or -PSNR at the bytes. Smaller is
+  // better.
+  StatusOr<double> Score();
+
+  // Codes until the target is met: bytes within 2 % and never over, or a PSNR less than 0.3 dB over and never under. Where that
+  // fails, the attempt that comes nearest, with meets_target telling whether it keeps to the side promised.
+  StatusOr<MeasuredStream> Meet();
+
+ private:
+  enum class Distortion { kEstimated, kMeasured };
+  struct Attempt {
+    CodedStream stream;
+    double psnr = 0;
+    double value = 0;  // in the unit of the target: ln(bytes) or dB
+  };
+  StatusOr<Attempt> Try(double log_lambda, Distortion distortion);
+  double Goal() const;
+  double TypicalSlope() const;
+  double NextGuess() const;
+  bool CannotReach() const;
+
+  const NormalMeshCandidate& candidate_;
+  const double remesh_psnr_;
+  const SurfaceDistanceMeter& meter_;
+  const ResolvedTarget target_;
+  const EncodeMode mode_;
+  double start_;                     // ln(lambda) to begin with
+  std::map<double, double> values_;  // value by ln(lambda) of the attempts so far
+};
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DRACO_CANDIDATE_SEARCH_H_
