@@ -163,6 +163,7 @@ std::set<uint64_t> ViewsOfAccessor(const GltfDocument& document, uint64_t index)
 
 void DropUnusedViews(const std::set<uint64_t>& candidates, GltfDocument* document) {
   std::set<uint64_t> unused = candidates;
+  unused.erase(unused.lower_bound(ArraySize(document->json, "bufferViews")), unused.end());  // may dangle
   VisitViewReferences(document->json, [&](Json& reference) {
     if (const std::optional<uint64_t> view = AsIndex(&reference); view.has_value()) unused.erase(*view);
   });

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "document/gltf_document.h"
 #include "extension/progressive.h"
 #include "gltf/test_assets.h"
@@ -16,11 +18,15 @@ using ::testing::IsEmpty;
 using testing::JsonOf;
 using testing::WavySphere;
 
-PackResult Packed(Fallback fallback) {
+// Encoded once per process: the tests change copies of it.
+const PackResult& Packed(Fallback fallback) {
+  static std::map<Fallback, PackResult> known;
+  const auto found = known.find(fallback);
+  if (found != known.end()) return found->second;
   PackOptions options;
   options.encode.target = {EncodeTarget::Kind::kPsnr, 55.0};
   options.fallback = fallback;
-  return PackMesh(WavySphere(24, 36), "ball", options).value();
+  return known.emplace(fallback, PackMesh(WavySphere(24, 36), "ball", options).value()).first->second;
 }
 
 ProgressiveSurface Read(const Bytes& glb, std::optional<int> level = std::nullopt) {
@@ -33,7 +39,7 @@ ProgressiveSurface Read(const Bytes& glb, std::optional<int> level = std::nullop
 
 TEST(Unpack, EveryLevelOfEveryFallback) {
   for (const Fallback fallback : {Fallback::kDraco, Fallback::kPlain, Fallback::kNone}) {
-    const PackResult packed = Packed(fallback);
+    const PackResult& packed = Packed(fallback);
     const EncodeReport& report = packed.report.primitives[0].encode;
     ASSERT_EQ(packed.report.primitives[0].storage, PrimitiveStorage::kProgressive);
     for (size_t level = 0; level < report.levels.size(); ++level) {
@@ -58,7 +64,6 @@ TEST(Unpack, EveryLevelOfEveryFallback) {
 
 TEST(Unpack, FallbackAndBaseAgree) {
   const ProgressiveSurface base = Read(Packed(Fallback::kDraco).glb, 0);
-  Json json;
   GltfDocument document = ParseGltf(Packed(Fallback::kDraco).glb, "").value();
   document.json["extensions"][kProgressiveName]["version"] = 99;  // force the fallback
   const ProgressiveSurface fallback = Read(FormatGlb(document));
@@ -79,6 +84,11 @@ TEST(Unpack, AnEditedAssetShowsItsFallback) {
   };
   const std::string extension = std::string("/extensions/") + kProgressiveName;
   const std::string primitive = std::string("/meshes/0/primitives/0/extensions/") + kProgressiveName;
+  // A dangling view must not harm unpacking either, also where nothing may be renumbered.
+  GltfDocument dangling = ParseGltf(Packed(Fallback::kDraco).glb, "").value();
+  dangling.json["extensions"][kProgressiveName]["data"] = 1000;
+  dangling.json["extensionsUsed"].push_back("VENDOR_unknown");
+  EXPECT_TRUE(UnpackGltf(FormatGlb(dangling), {}).ok());
   EXPECT_THAT(note_after(Fallback::kPlain, "/accessors/0/max/0", 77.0), HasSubstr("edited"));
   EXPECT_THAT(note_after(Fallback::kDraco, "/accessors/0/min/0", -77.0), HasSubstr("edited"));
   EXPECT_THAT(note_after(Fallback::kDraco, extension + "/data", 1000), HasSubstr("bufferView 1000"));
@@ -101,8 +111,9 @@ TEST(Unpack, WithoutFallbackItFailsByName) {
 }
 
 TEST(Unpack, EveryPrefixThatHoldsTheBaseGivesAMesh) {
-  const PackResult packed = Packed(Fallback::kDraco);
+  const PackResult& packed = Packed(Fallback::kDraco);
   const StreamInfo info = DescribeGltf(packed.glb, "").value().streams[0];
+  ASSERT_GE(info.levels.size(), 2u);
   const uint64_t padding = 3;
   const uint64_t data_begin = packed.glb.size() - info.levels.back().bytes;  // up to the padding at the end
   int last_level = -1;
@@ -179,7 +190,7 @@ TEST(Flatten, RefusesCyclesAndTooManyInstances) {
 }
 
 TEST(Describe, TellsWhatIsInside) {
-  const PackResult packed = Packed(Fallback::kPlain);
+  const PackResult& packed = Packed(Fallback::kPlain);
   const auto info = DescribeGltf(packed.glb, "");
   ASSERT_TRUE(info.ok()) << info.status().message();
   EXPECT_EQ(info.value().fallback, Fallback::kPlain);
@@ -197,10 +208,10 @@ TEST(Describe, TellsWhatIsInside) {
 
 TEST(Describe, BareStreamsAgreeWithTheirReport) {
   EncodeOptions options;
-  options.target = {EncodeTarget::Kind::kPsnr, 55.0};
+  options.target = {EncodeTarget::Kind::kPsnr, 45.0};
   for (const StreamForm form : {StreamForm::kDraco, StreamForm::kCustom}) {
     options.form = form;
-    const auto encoded = EncodeMesh(WavySphere(24, 36), options);
+    const auto encoded = EncodeMesh(WavySphere(13, 22), options);
     ASSERT_TRUE(encoded.ok()) << encoded.status().message();
     const auto info = DescribeStream(encoded.value().stream, {});
     ASSERT_TRUE(info.ok()) << info.status().message();

@@ -109,7 +109,7 @@ expect_match("${ERR}" "missing.obj: no such file")
 expect(4 pack good.obj -o missing/c.glb --psnr 50)
 expect_missing(c.glb c.ply c.stl missing)
 # 5: a target that cannot be met; the output is there
-expect(5 pack good.obj -o tiny.drc --bytes 10)
+expect(5 pack good.obj -o tiny.drc --bpv 0.5)
 expect_match("${ERR}" "misses the target")
 expect(0 info tiny.drc)
 file(GLOB left ${FOLDER}/*.partial-*)
