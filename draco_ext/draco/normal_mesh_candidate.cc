@@ -14,21 +14,8 @@
 namespace lacerta {
 namespace {
 
-// The finest level has at least this many times the vertices of the input: chords of the remesh then cost little.
-constexpr double kVertexShare = 1.5;
-constexpr int kMaxLevels = 10;
 // Step of the base lattice while the order of the base is found, as a share of the diagonal.
 constexpr double kNominalStep = 5e-4;
-
-int LevelsFor(uint32_t num_base_vertices, size_t num_input_vertices) {
-  double vertices = num_base_vertices;
-  int levels = 0;
-  while (vertices < kVertexShare * static_cast<double>(num_input_vertices) && levels < kMaxLevels) {
-    vertices *= 4;
-    ++levels;
-  }
-  return levels;
-}
 
 TriangleMesh BaseOf(const BaseDomain& domain, const TriangleMesh& input) {
   TriangleMesh base;
@@ -46,7 +33,7 @@ NormalMeshCandidate::NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh)
       detail_scales_(DetailScales(target_)) {}
 
 StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const InputSurface& surface, const CollapseHistory& history,
-                                                          uint32_t num_base_vertices) {
+                                                          uint32_t num_base_vertices, int num_levels) {
   const TriangleMesh& input = surface.mesh();
   const auto num_vertices = static_cast<uint32_t>(input.positions.size());
   const uint32_t time = std::min(history.num_collapses(), num_vertices - std::min(num_vertices, num_base_vertices));
@@ -55,7 +42,7 @@ StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const InputSurface& su
   LACERTA_ASSIGN_OR_RETURN(CodedBase base, EncodeBaseMesh(RoundToLattice(BaseOf(domain, input), nominal_step)));
   domain.Reorder(base.vertex_map, base.mesh.triangles);
   PiercingOptions options;
-  options.num_levels = LevelsFor(domain.num_vertices(), input.positions.size());
+  options.num_levels = num_levels;
   return NormalMeshCandidate(std::move(base), Pierce(surface, domain, BaseOf(domain, input).positions, options));
 }
 

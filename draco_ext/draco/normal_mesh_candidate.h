@@ -31,11 +31,10 @@ struct CodedStream {
 
 class NormalMeshCandidate {
  public:
-  // The base mesh is the one that `history` has at `num_base_vertices` vertices, or its coarsest if that is larger. There are
-  // as many levels as it takes to have about as many vertices as the input.
-  // surface and history must outlive the candidate. Fails where Draco cannot carry the base.
+  // The base mesh is the one that `history` has at `num_base_vertices` vertices, or its coarsest if that is larger.
+  // num_levels: above the base. Fails where Draco cannot carry the base.
   static StatusOr<NormalMeshCandidate> Create(const InputSurface& surface, const CollapseHistory& history,
-                                              uint32_t num_base_vertices);
+                                              uint32_t num_base_vertices, int num_levels);
 
   // Codes at a slope of the rate-distortion curve: lambda in squared model units per bit, > 0. A larger one gives fewer bytes.
   StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const;

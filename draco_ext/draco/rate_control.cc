@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,10 +24,22 @@ int RungOfSize(double size) {
   return std::max(0, static_cast<int>(std::lround(std::log(size / kFirstRung) / std::log(kRungRatio))));
 }
 
-int TypicalRung(const ResolvedTarget& target, double num_input_vertices) {
+// Where a stream of that rate usually ends up, dB.
+double TypicalPsnr(const ResolvedTarget& target, double num_input_vertices) {
+  if (!target.is_rate) return target.psnr;
   const double bits_per_vertex = 8 * target.bytes / num_input_vertices;
-  const double psnr = target.is_rate ? 62 + 6 * std::log2(1 + 4 * bits_per_vertex) : target.psnr;
-  return RungOfSize(180 * std::pow(2.0, (psnr - 70) / 7));
+  return 62 + 6 * std::log2(1 + 4 * bits_per_vertex);
+}
+
+int TypicalRung(double psnr) { return RungOfSize(200 * std::pow(2.0, (psnr - 70) / 6)); }
+
+// Levels that bring a base to at least as many vertices as the input has; chords of the remesh then cost little.
+int LevelsFor(double num_base_vertices, double num_input_vertices) {
+  constexpr double kVertexShare = 1.5;
+  constexpr int kMostLevels = 10;
+  int levels = 0;
+  for (double v = num_base_vertices; v < kVertexShare * num_input_vertices && levels < kMostLevels; v *= 4) ++levels;
+  return levels;
 }
 
 // A base size that was tried.
@@ -42,27 +55,34 @@ class Ladder {
   Ladder(const InputSurface& surface, const CollapseHistory& history, const SurfaceDistanceMeter& meter,
          const ResolvedTarget& target, EncodeMode mode)
       : surface_(surface), history_(history), meter_(meter), target_(target), mode_(mode) {
-    const auto num_input = static_cast<double>(surface.mesh().positions.size());
+    num_input_ = static_cast<double>(surface.mesh().positions.size());
     constexpr double kLargestBase = 0.5;  // of the input's vertices
-    last_ = RungOfSize(std::max(kFirstRung, kLargestBase * num_input));
-    first_ = std::min(TypicalRung(target, num_input), last_);
+    last_ = RungOfSize(std::max(kFirstRung, kLargestBase * num_input_));
   }
 
-  // Scores the rungs around the typical one, then goes on while the best one is the last tried on its side.
-  StatusOr<Rung*> FindBest(const std::function<void(double, const char*)>& progress) {
-    LACERTA_RETURN_IF_ERROR(Visit({first_ - 1, first_, first_ + 1}));
+  // Scores the rungs around the typical one and goes on until two on either side of the best are known to be worse: one alone
+  // may be a fluke of its simplification. Returns the most promising rungs, best first; at least one.
+  StatusOr<std::vector<Rung*>> FindBest(const std::function<void(double, const char*)>& progress) {
+    const int first = std::min(TypicalRung(TypicalPsnr(target_, num_input_)), last_);
+    LACERTA_RETURN_IF_ERROR(Visit({first - 1, first, first + 1}));
     for (;;) {
-      if (progress) progress(std::min(0.75, 0.1 + 0.1 * static_cast<double>(rungs_.size())), "choosing the base mesh");
-      const int best = Best();
-      const int lowest = rungs_.begin()->first, highest = rungs_.rbegin()->first;
-      const bool unreached = !std::isfinite(rungs_[best].score);
-      if ((best == highest || unreached) && highest < last_) {
-        LACERTA_RETURN_IF_ERROR(Visit({highest + 1, highest + 2}));
-      } else if (best == lowest && lowest > 0 && !unreached) {
-        LACERTA_RETURN_IF_ERROR(Visit({lowest - 1, lowest - 2}));
-      } else {
-        return &rungs_[best];
+      if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(rungs_.size())), "choosing the base mesh");
+      const std::vector<int> ranking = Ranking();
+      const int best = ranking.front(), highest = rungs_.rbegin()->first;
+      std::vector<int> next;
+      if (std::isfinite(rungs_[best].score)) {
+        for (const int r : {best - 2, best - 1, best + 1, best + 2}) {
+          if (r >= 0 && r <= last_ && rungs_.count(r) == 0) next.push_back(r);
+        }
+      } else if (highest < last_) {  // nothing reaches the target yet: larger bases
+        next = {highest + 1, highest + 2};
       }
+      if (next.empty()) {
+        std::vector<Rung*> result;
+        for (const int r : ranking) result.push_back(&rungs_[r]);
+        return result;
+      }
+      LACERTA_RETURN_IF_ERROR(Visit(next));
     }
   }
 
@@ -81,13 +101,22 @@ class Ladder {
   }
 
   Status Make(int number, Rung* rung) const {
-    LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate, NormalMeshCandidate::Create(surface_, history_, RungSize(number)));
-    rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(candidate));
-    SurfaceDistanceOptions rough;
-    rough.num_samples = 30'000;
-    rough.max_at_vertices = false;
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(rung->candidate->RemeshedSurface(), rough));
-    rung->remesh_psnr = Psnr(distance.Rms(), meter_.diagonal());
+    const double goal = TypicalPsnr(target_, num_input_);
+    constexpr double kComfort = 6;         // dB: a remesh nearer to the goal than that costs bytes...
+    constexpr double kMostVertices = 8.0;  // ...and gets one level more, up to so many times the input's vertices
+    for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
+      LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate,
+                               NormalMeshCandidate::Create(surface_, history_, RungSize(number), levels));
+      rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(candidate));
+      SurfaceDistanceOptions rough;
+      rough.num_samples = 30'000;
+      rough.max_at_vertices = false;
+      const TriangleMesh remesh = rung->candidate->RemeshedSurface();
+      LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(remesh, rough));
+      rung->remesh_psnr = Psnr(distance.Rms(), meter_.diagonal());
+      const double next_vertices = 4 * static_cast<double>(remesh.positions.size());
+      if (rung->remesh_psnr > goal + kComfort || next_vertices > kMostVertices * num_input_) break;
+    }
     rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_);
     constexpr double kHeadroom = 0.5;  // dB that quantization takes at least
     if (!target_.is_rate && rung->remesh_psnr < target_.psnr + kHeadroom) return Status();
@@ -95,13 +124,16 @@ class Ladder {
     return Status();
   }
 
-  // The rung with the lowest score, or, where none reaches the target, with the best remesh.
-  int Best() const {
-    const auto better = [](const auto& a, const auto& b) {
-      if (std::isfinite(a.second.score) || std::isfinite(b.second.score)) return a.second.score < b.second.score;
-      return a.second.remesh_psnr > b.second.remesh_psnr;
-    };
-    return std::min_element(rungs_.begin(), rungs_.end(), better)->first;
+  // Rungs by score, the lowest first, or, where none reaches the target, by the quality of the remesh.
+  std::vector<int> Ranking() const {
+    std::vector<int> numbers;
+    for (const auto& [r, rung] : rungs_) numbers.push_back(r);
+    std::stable_sort(numbers.begin(), numbers.end(), [&](int a, int b) {
+      const Rung &x = rungs_.at(a), &y = rungs_.at(b);
+      if (std::isfinite(x.score) || std::isfinite(y.score)) return x.score < y.score;
+      return x.remesh_psnr > y.remesh_psnr;
+    });
+    return numbers;
   }
 
   const InputSurface& surface_;
@@ -109,7 +141,8 @@ class Ladder {
   const SurfaceDistanceMeter& meter_;
   const ResolvedTarget& target_;
   const EncodeMode mode_;
-  int first_, last_;
+  double num_input_;
+  int last_;
   std::map<int, Rung> rungs_;
 };
 
@@ -142,13 +175,20 @@ StatusOr<ChosenStream> CodeAtTarget(const InputSurface& surface, const CollapseH
                                     const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
                                     const std::function<void(double, const char*)>& progress) {
   Ladder ladder(surface, history, meter, target, mode);
-  LACERTA_ASSIGN_OR_RETURN(Rung* const best, ladder.FindBest(progress));
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<Rung*> rungs, ladder.FindBest(progress));
   if (progress) progress(0.8, "meeting the target");
-  ChosenStream result;
-  LACERTA_ASSIGN_OR_RETURN(result.measured, best->search->Meet());
-  result.remesh_psnr = best->remesh_psnr;
-  result.normal_share = NormalShare(best->candidate->normal_mesh());
-  return result;
+  constexpr size_t kMostTries = 3;  // scores are estimates: the best may yet miss the target
+  std::optional<ChosenStream> best;
+  for (size_t i = 0; i < std::min(kMostTries, rungs.size()); ++i) {
+    const Rung& rung = *rungs[i];
+    LACERTA_ASSIGN_OR_RETURN(MeasuredStream measured, rung.search->Meet());
+    const bool nearer = best && !best->measured.meets_target && (measured.meets_target || measured.psnr > best->measured.psnr);
+    if (!best || nearer) {
+      best = {std::move(measured), rung.remesh_psnr, NormalShare(rung.candidate->normal_mesh())};
+    }
+    if (best->measured.meets_target) break;
+  }
+  return std::move(*best);
 }
 
 }  // namespace lacerta

@@ -39,12 +39,16 @@ class Reach {
   uint32_t first_midpoint_;
 };
 
-// Sliding along the surface costs this share of what leaving it costs: little enough to be free, but vertices do not drift.
-constexpr float kSlideCost = 0.05f;
-
-// The metric of SurfaceTarget at a vertex with normal n, applied to an offset.
-Vec3f Weigh(const Vec3f& offset, const Vec3f& n) {
-  return offset * kSlideCost + n * ((1 - kSlideCost) * Dot(offset, n));
+// The metric of SurfaceTarget at a vertex, applied to an offset. Sliding along the surface costs a share of what leaving it
+// costs: little where the vertex was found by piercing, so that vertices just do not drift; much where it was not, since the
+// surface is not flat there in the sense that planes presume.
+Vec3f Weigh(const SurfaceTarget& target, size_t v, const Vec3f& offset) {
+  constexpr float kPiercedSlideCost = 0.05f, kOtherSlideCost = 0.15f;
+  const size_t num_base = target.points.size() - target.piercing.size();
+  const bool pierced = v < num_base || target.piercing[v - num_base] == PiercingKind::kNormal;
+  const float slide_cost = pierced ? kPiercedSlideCost : kOtherSlideCost;
+  const Vec3f& n = target.normals[v];
+  return offset * slide_cost + n * ((1 - slide_cost) * Dot(offset, n));
 }
 
 // Half the gradient of the distortion with respect to the positions of the finest level, brought down to `level`.
@@ -52,7 +56,7 @@ std::vector<Vec3f> GradientAt(const SurfaceTarget& target, const std::vector<Vec
   const std::vector<float>& mass = target.masses.back();
   std::vector<Vec3f> gradient(positions.size());
   for (size_t v = 0; v < positions.size(); ++v) {
-    gradient[v] = Weigh(positions[v] - target.points[v], target.normals[v]) * mass[v];
+    gradient[v] = Weigh(target, v, positions[v] - target.points[v]) * mass[v];
   }
   for (int l = target.num_levels() - 1; l >= level; --l) {
     const uint32_t num_vertices = target.topologies[l].num_vertices;
@@ -88,14 +92,14 @@ class LocalModel {
     Parabola p;
     reach_.Visit(v, [&](uint32_t u, float weight) {
       p.slope += weight * Dot(gradient_[u], direction);
-      p.curvature += weight * weight * masses_[u] * Dot(direction, Weigh(direction, target_.normals[u]));
+      p.curvature += weight * weight * masses_[u] * Dot(direction, Weigh(target_, u, direction));
     });
     return p;
   }
 
   void Move(uint32_t v, const Vec3f& displacement) {
     reach_.Visit(v, [&](uint32_t u, float weight) {
-      gradient_[u] += Weigh(displacement, target_.normals[u]) * (masses_[u] * weight);
+      gradient_[u] += Weigh(target_, u, displacement) * (masses_[u] * weight);
     });
   }
 
@@ -248,13 +252,16 @@ CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& bas
     for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
       const uint32_t v = coarse.num_vertices + e;
       const Vec3f detail = target.points[v] - predicted[e];
-      const float cosine = Dot(frames[e].normal, target.normals[v]);
-      constexpr float kMinCosine = 0.3f;  // a flatter tangent plane meets the normal line too far away
-      if (target.piercing[v - base.lattice.size()] == PiercingKind::kNormal && cosine > kMinCosine) {
-        quantized.normal[e] = RoundToStep(Dot(detail, target.normals[v]) / cosine, step.normal_step);
+      const Vec3f local = frames[e].ToLocal(detail);
+      const float on_plane = Dot(detail, target.normals[v]) / Dot(frames[e].normal, target.normals[v]);
+      // Where the tangent plane stands too steep the normal line meets it far away, or never.
+      constexpr float kMaxSlide = 0.1f;  // of the edge
+      const float edge = Norm(positions[coarse.edges[e][1]] - positions[coarse.edges[e][0]]);
+      const bool slides = std::fabs(on_plane - local.z) <= kMaxSlide * edge;  // false for NaN and infinity
+      if (slides && target.piercing[v - base.lattice.size()] == PiercingKind::kNormal) {
+        quantized.normal[e] = RoundToStep(on_plane, step.normal_step);
         continue;
       }
-      const Vec3f local = frames[e].ToLocal(detail);
       quantized.tangential[2 * e] = RoundToStep(local.x, step.tangential_step);
       quantized.tangential[2 * e + 1] = RoundToStep(local.y, step.tangential_step);
       quantized.normal[e] = RoundToStep(local.z, step.normal_step);

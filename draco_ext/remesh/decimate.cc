@@ -52,6 +52,7 @@ class Decimator {
   std::priority_queue<HeapEntry> heap_;
   CollapseHistory history_;
   double length_scale_;           // of the mean input edge, squared
+  std::vector<double> covered_area_;  // per face of the history: area of the input that it stands for
 };
 
 Decimator::Decimator(const TriangleMesh& mesh, const DecimateOptions& options)
@@ -74,6 +75,7 @@ Decimator::Decimator(const TriangleMesh& mesh, const DecimateOptions& options)
   double sum = 0;
   for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
     const Triangle& t = mesh.triangles[f];
+    covered_area_.push_back(Norm(Cross(positions_[t[1]] - positions_[t[0]], positions_[t[2]] - positions_[t[0]])) / 2);
     const Quadric q = Quadric::OfTriangle(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
     for (int k = 0; k < 3; ++k) {
       quadrics_[t[k]] += q;
@@ -156,6 +158,7 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
   const int k = static_cast<int>(fan.ring.size());
   const uint32_t u = fan.ring[kept];
   double worst_aspect = 1;
+  double new_area = 0;
   for (int i = kept + 1; i < kept + k - 1; ++i) {
     const int a = i % k, b = (i + 1) % k;
     if (Orientation(chart[kept], chart[a], chart[b]) < 1e-5) return kNotSound;
@@ -163,6 +166,7 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
     const Vec3d normal = Cross(pa - pu, pb - pu);
     const double area2 = Norm(normal);
     if (!(area2 > 0) || Dot(normal, old_normals[a]) < options_.min_normal_cosine * area2) return kNotSound;
+    new_area += area2 / 2;
     const double edges = SquaredNorm(pa - pu) + SquaredNorm(pb - pu) + SquaredNorm(pb - pa);
     worst_aspect = std::max(worst_aspect, edges / (2 * std::sqrt(3.0) * area2));  // 1 for the equilateral triangle
   }
@@ -170,10 +174,15 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
   Quadric q = quadrics_[v];
   q += quadrics_[u];
   const double valence = static_cast<double>(vertex_faces_[u].size()) + k - 4;
+  // A triangle that stands for much more of the input than its own area hides a limb that its samples will miss: quadrics see
+  // only how far the limb's sides are away, which is not much, not how long it is (docs/decisions/0004-limbs.md).
+  double covered = 0;
+  for (const uint32_t f : fan.faces) covered += covered_area_[f];
+  const double coverage = std::max(1.0, covered / new_area);
   const double valence_penalty = 1 + 0.25 * std::max(0.0, valence - 7);
   // The small second term orders flat regions by edge length; relative to the input's scale, it is nothing elsewhere.
   const double edge = SquaredNorm(positions_[u] - positions_[v]);
-  return (q.Evaluate(positions_[u]) + 1e-6 * edge * length_scale_) * worst_aspect * valence_penalty;
+  return (q.Evaluate(positions_[u]) + 1e-6 * edge * length_scale_) * worst_aspect * valence_penalty * coverage * coverage;
 }
 
 Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
@@ -207,9 +216,15 @@ void Decimator::Collapse(uint32_t v, const Fan& fan, int kept) {
     const auto gone = [&](uint32_t f) { return std::find(fan.faces.begin(), fan.faces.end(), f) != fan.faces.end(); };
     faces.erase(std::remove_if(faces.begin(), faces.end(), gone), faces.end());
   }
+  double covered = 0, new_area = 0;
+  for (const uint32_t f : fan.faces) covered += covered_area_[f];
   for (uint32_t f = first_new; f < first_new + static_cast<uint32_t>(k - 2); ++f) {
-    for (const uint32_t w : history_.face(f)) vertex_faces_[w].push_back(f);
+    const Triangle& t = history_.face(f);
+    for (const uint32_t w : t) vertex_faces_[w].push_back(f);
+    covered_area_.push_back(Norm(Cross(positions_[t[1]] - positions_[t[0]], positions_[t[2]] - positions_[t[0]])) / 2);
+    new_area += covered_area_.back();
   }
+  for (uint32_t f = first_new; f < covered_area_.size(); ++f) covered_area_[f] *= covered / new_area;
   vertex_faces_[v] = {};
 }
 
