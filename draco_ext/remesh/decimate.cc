@@ -142,7 +142,8 @@ double Orientation(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Whether every face of the fan keeps its orientation in the chart: flattening may open an angle to 180 degrees or more.
+// Whether every face of the fan has area in the chart. An angle is at most the sum of the others, so flattening opens it to 180
+// degrees at most, which it does at a vertex in the plane of its ring but outside of it.
 bool IsStarShaped(const std::vector<Vec2d>& chart) {
   for (size_t i = 0; i < chart.size(); ++i) {
     if (!(Orientation(Vec2d{}, chart[i], chart[(i + 1) % chart.size()]) > kLeastChartArea)) return false;
