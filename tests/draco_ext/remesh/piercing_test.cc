@@ -240,13 +240,13 @@ TEST(Pierce, RealMeshes) {
       SCOPED_TRACE(input.name + ", base of " + std::to_string(size));
       const BaseDomain domain(history, TimeOf(history, input.mesh, size));
       PiercingOptions options;
-      options.num_levels = 4;
+      options.num_levels = size == 100 ? 4 : 3;
       const NormalMesh mesh = Pierce(surface, domain, BasePositions(domain, input.mesh), options);
       ExpectSound(input.mesh, mesh);
       EXPECT_GT(NormalShare(mesh), size == 100 ? 0.93 : 0.97);
       EXPECT_LT(NormalShare(mesh), 1.0);
       const double psnr = PsnrOf(input.mesh, mesh);
-      EXPECT_GT(psnr, size == 100 ? 48 : 72);
+      EXPECT_GT(psnr, size == 100 ? 48 : 62);
       EXPECT_LT(psnr, size == 100 ? 80 : 100);
     }
   }
