@@ -243,10 +243,10 @@ TEST(Pierce, RealMeshes) {
       options.num_levels = size == 100 ? 4 : 3;
       const NormalMesh mesh = Pierce(surface, domain, BasePositions(domain, input.mesh), options);
       ExpectSound(input.mesh, mesh);
-      EXPECT_GT(NormalShare(mesh), size == 100 ? 0.93 : 0.97);
+      EXPECT_GT(NormalShare(mesh), size == 100 ? 0.87 : 0.94);
       EXPECT_LT(NormalShare(mesh), 1.0);
       const double psnr = PsnrOf(input.mesh, mesh);
-      EXPECT_GT(psnr, size == 100 ? 48 : 62);
+      EXPECT_GT(psnr, size == 100 ? 60 : 70);
       EXPECT_LT(psnr, size == 100 ? 80 : 100);
     }
   }
