@@ -108,11 +108,9 @@ class Ladder {
       LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate,
                                NormalMeshCandidate::Create(surface_, history_, RungSize(number), levels));
       rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(candidate));
-      SurfaceDistanceOptions rough;
-      rough.num_samples = 30'000;
-      rough.max_at_vertices = false;
+      constexpr uint64_t kRoughSamples = 30'000;
       const TriangleMesh remesh = rung->candidate->RemeshedSurface();
-      LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(remesh, rough));
+      LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(remesh, SurfaceDistanceOptions::RmsOnly(kRoughSamples)));
       rung->remesh_psnr = Psnr(distance.Rms(), meter_.diagonal());
       const double next_vertices = 4 * static_cast<double>(remesh.positions.size());
       if (rung->remesh_psnr > goal + kComfort || next_vertices > kMostVertices * num_input_) break;
