@@ -1,14 +1,11 @@
 // Built twice: with tinygltf as it comes, and with its own Draco decoder (TINYGLTF_ENABLE_DRACO).
-#define TINYGLTF_IMPLEMENTATION
-#define TINYGLTF_NO_STB_IMAGE
-#define TINYGLTF_NO_STB_IMAGE_WRITE
-#define TINYGLTF_NO_EXTERNAL_IMAGE
 #include "lacerta/tinygltf.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tiny_gltf.h>
 
+#include <functional>
+#include <locale>
 #include <map>
 
 #include "document/normals.h"
