@@ -44,12 +44,12 @@ tinygltf::Model Loaded(const Bytes& glb) {
 // Two meshes that share a smooth ball, one flat ball and one mesh of points.
 Bytes Scene() {
   AssetBuilder builder;
-  const TriangleMesh ball = WavySphere(16, 24);
+  const TriangleMesh ball = WavySphere(14, 20);
   Json smooth = builder.Primitive(ball);
   smooth["attributes"]["NORMAL"] = builder.AddFloats(DeriveNormals(ball), false);
   builder.AddMesh("smooth", Json::array({smooth}));
   builder.AddMesh("twin", Json::array({smooth}));
-  builder.AddMesh("flat", Json::array({builder.Primitive(WavySphere(12, 18, {4, 0, 0}))}));
+  builder.AddMesh("flat", Json::array({builder.Primitive(WavySphere(12, 16, {4, 0, 0}))}));
   const TriangleMesh points = WavySphere(3, 4);
   Json cloud = {{"attributes", {{"POSITION", builder.AddFloats(points.positions, true)}}}, {"mode", 0}};
   builder.AddMesh("cloud", Json::array({cloud}));
@@ -312,16 +312,18 @@ TEST(TinyGltf, NumbersSurviveAnyLocale) {
 TEST(TinyGltf, DamagedBytesNeverCrash) {
   const tinygltf::Model original = Loaded(Packed(LoadableFallbacks().back()));
   const size_t size = StreamSize(original);
+  size_t num_damaged = 0;
   size_t num_notes = 0;
   for (size_t i = 0; i < size; i += size / 150 + 1) {
     tinygltf::Model model = original;
     *StreamByte(&model, i) ^= 0x55;
     const auto result = RefineModel(&model, {});
     ASSERT_TRUE(result.ok()) << result.status().message();
+    ++num_damaged;
     num_notes += result.value().notes.size();
   }
-  EXPECT_GE(num_notes, 100u);
-  EXPECT_LE(num_notes, 300u);
+  EXPECT_GE(10 * num_notes, 7 * num_damaged);  // some bits of a Draco base matter to nobody
+  EXPECT_LE(num_notes, num_damaged);           // one stream at a time
 }
 
 }  // namespace
