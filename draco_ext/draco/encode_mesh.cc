@@ -75,12 +75,28 @@ StatusOr<EncodedMesh> InForm(StreamForm form, EncodedMesh mesh) {
   return mesh;
 }
 
-}  // namespace
-
-StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions& options) {
+// The remeshed surface at the target, or a simplified mesh in stock Draco form where that is better.
+StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
+                                    const EncodeOptions& options, const EncodeReport& report) {
   const auto progress = [&](double share, const char* stage) {
     if (options.progress) options.progress(share, stage);
   };
+  LACERTA_RETURN_IF_ERROR(CheckRemeshable(mesh));
+  progress(0.0, "simplifying");
+  const CollapseHistory history = Decimate(mesh, DecimateOptions());
+  const InputSurface surface(mesh);
+  LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen,
+                           CodeAtTarget(surface, history, meter, target, options.mode, options.progress));
+  progress(0.95, "comparing with Draco");
+  LACERTA_ASSIGN_OR_RETURN(std::optional<ZeroLevelStream> simpler,
+                           SimplerIfBetter(mesh, history, meter, target, chosen.measured));
+  if (simpler) return FromZeroLevel(std::move(*simpler), report, "a simplified mesh in stock Draco form is smaller");
+  return FromRefinement(meter, chosen, report);
+}
+
+}  // namespace
+
+StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions& options) {
   LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(input));
   const TriangleMesh& mesh = cleaned.mesh;
   LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget target, ResolveTarget(options.target, mesh.positions.size()));
@@ -91,21 +107,13 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   report.input_triangles = mesh.triangles.size();
   report.diagonal = meter.diagonal();
 
-  if (const Status why_not = CheckRemeshable(mesh); !why_not.ok()) {
+  StatusOr<EncodedMesh> encoded = EncodeSurface(mesh, meter, target, options, report);
+  if (!encoded.ok()) {  // the mesh as it is, then, with the reason
     LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, CodeZeroLevel(mesh, meter, target));
-    LACERTA_ASSIGN_OR_RETURN(EncodedMesh result, InForm(options.form, FromZeroLevel(std::move(zero), std::move(report), why_not.message())));
-    return result;
+    encoded = FromZeroLevel(std::move(zero), report, encoded.status().message());
   }
-  progress(0.0, "simplifying");
-  const CollapseHistory history = Decimate(mesh, DecimateOptions());
-  const InputSurface surface(mesh);
-  LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen, CodeAtTarget(surface, history, meter, target, options.mode, options.progress));
-  progress(0.95, "comparing with Draco");
-  LACERTA_ASSIGN_OR_RETURN(std::optional<ZeroLevelStream> simpler, SimplerIfBetter(mesh, history, meter, target, chosen.measured));
-  if (simpler) return InForm(options.form, FromZeroLevel(std::move(*simpler), std::move(report), "a simplified mesh in stock Draco form is smaller"));
-  LACERTA_ASSIGN_OR_RETURN(EncodedMesh result, FromRefinement(meter, chosen, std::move(report)));
-  progress(1.0, "done");
-  return InForm(options.form, std::move(result));
+  if (options.progress) options.progress(1.0, "done");
+  return InForm(options.form, std::move(encoded).value());
 }
 
 }  // namespace lacerta

@@ -46,6 +46,7 @@ int LevelsFor(double num_base_vertices, double num_input_vertices) {
 struct Rung {
   std::unique_ptr<NormalMeshCandidate> candidate;
   std::unique_ptr<CandidateSearch> search;
+  Status status;  // why there is no candidate, if so
   double remesh_psnr = 0;
   double score = std::numeric_limits<double>::infinity();  // of CandidateSearch::Score; infinite: cannot reach the target
 };
@@ -64,7 +65,7 @@ class Ladder {
   // may be a fluke of its simplification. Returns the most promising rungs, best first; at least one.
   StatusOr<std::vector<Rung*>> FindBest(const std::function<void(double, const char*)>& progress) {
     const int first = std::min(TypicalRung(TypicalPsnr(target_, num_input_)), last_);
-    LACERTA_RETURN_IF_ERROR(Visit({first - 1, first, first + 1}));
+    Visit({first - 1, first, first + 1});
     for (;;) {
       if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(rungs_.size())), "choosing the base mesh");
       const std::vector<int> ranking = Ranking();
@@ -79,25 +80,28 @@ class Ladder {
       }
       if (next.empty()) {
         std::vector<Rung*> result;
-        for (const int r : ranking) result.push_back(&rungs_[r]);
+        for (const int r : ranking) {
+          if (rungs_[r].status.ok()) result.push_back(&rungs_[r]);
+        }
+        if (result.empty()) return rungs_[best].status.WithContext("no base mesh can be coded");
         return result;
       }
-      LACERTA_RETURN_IF_ERROR(Visit(next));
+      Visit(next);
     }
   }
 
  private:
-  // Makes and scores the given rungs, in parallel; those off the ladder are left out.
-  Status Visit(const std::vector<int>& numbers) {
+  // Makes and scores the given rungs, in parallel; those off the ladder are left out. A base that fails costs only itself.
+  void Visit(const std::vector<int>& numbers) {
     std::vector<std::pair<int, Rung>> made;
     for (const int r : numbers) {
       if (r >= 0 && r <= last_) made.emplace_back(r, Rung());
     }
-    std::vector<Status> status(made.size());
-    tbb::parallel_for(size_t{0}, made.size(), [&](size_t i) { status[i] = Make(made[i].first, &made[i].second); });
-    for (const Status& s : status) LACERTA_RETURN_IF_ERROR(s);
+    tbb::parallel_for(size_t{0}, made.size(), [&](size_t i) {
+      Rung& rung = made[i].second;
+      rung.status = Make(made[i].first, &rung);
+    });
     for (auto& [r, rung] : made) rungs_[r] = std::move(rung);
-    return Status();
   }
 
   Status Make(int number, Rung* rung) const {

@@ -107,12 +107,12 @@ Status CheckShape(const Json& json) {
   return Status();
 }
 
-Status CheckReadable(const GltfDocument& document) {
-  const Json* asset = Find(document.json, "asset");
+Status CheckReadable(const Json& json) {
+  const Json* asset = Find(json, "asset");
   const std::string version = asset == nullptr ? "" : AsString(Find(*asset, "version"));
   if (version.substr(0, 2) != "2.") return Unsupported("glTF version \"" + version + "\"; only 2.x is read");
   for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
-    if (UsesExtension(document, name)) {
+    if (UsesExtension(json, name)) {
       return Unsupported(std::string("the asset is compressed with ") + name +
                          ", which loses what a second compression would need; start from the uncompressed asset");
     }
@@ -122,6 +122,13 @@ Status CheckReadable(const GltfDocument& document) {
 
 }  // namespace
 
+StatusOr<Json> ParseGltfJson(std::string_view text) {
+  LACERTA_ASSIGN_OR_RETURN(Json json, ParseJson(text));
+  LACERTA_RETURN_IF_ERROR(CheckReadable(json));
+  LACERTA_RETURN_IF_ERROR(CheckShape(json));
+  return json;
+}
+
 StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& folder) {
   Chunks chunks;
   chunks.json = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -129,9 +136,7 @@ StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& f
     LACERTA_ASSIGN_OR_RETURN(chunks, SplitGlb(bytes));
   }
   GltfDocument document;
-  LACERTA_ASSIGN_OR_RETURN(document.json, ParseJson(chunks.json));
-  LACERTA_RETURN_IF_ERROR(CheckReadable(document));
-  LACERTA_RETURN_IF_ERROR(CheckShape(document.json));
+  LACERTA_ASSIGN_OR_RETURN(document.json, ParseGltfJson(chunks.json));
   for (uint64_t i = 0; i < ArraySize(document.json, "buffers"); ++i) {
     StatusOr<Bytes> buffer = LoadBuffer(*FindElement(document.json, "buffers", i), i == 0, chunks, folder);
     if (!buffer.ok()) return buffer.status().WithContext("buffer " + std::to_string(i));
@@ -174,10 +179,13 @@ StatusOr<Span<const uint8_t>> AvailableViewBytes(const GltfDocument& document, u
   for (const Status& status : {buffer.status(), offset.status(), length.status()}) {
     if (!status.ok()) return status.WithContext(name);
   }
-  if (buffer.value() >= document.buffers.size()) {
+  const bool borrowed = !document.borrowed_buffers.empty();
+  if (buffer.value() >= (borrowed ? document.borrowed_buffers.size() : document.buffers.size())) {
     return InvalidData(name + ": buffer " + std::to_string(buffer.value()) + " does not exist");
   }
-  const Span<const uint8_t> bytes = document.buffers[static_cast<size_t>(buffer.value())];
+  const auto buffer_index = static_cast<size_t>(buffer.value());
+  const Span<const uint8_t> bytes =
+      borrowed ? document.borrowed_buffers[buffer_index] : Span<const uint8_t>(document.buffers[buffer_index]);
   const uint64_t begin = std::min<uint64_t>(offset.value(), bytes.size());
   return bytes.Subspan(static_cast<size_t>(begin))
       .First(static_cast<size_t>(std::min(length.value(), bytes.size() - begin)));
@@ -193,8 +201,8 @@ StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint
   return bytes;
 }
 
-bool UsesExtension(const GltfDocument& document, const char* name) {
-  const Json* used = Find(document.json, "extensionsUsed");
+bool UsesExtension(const Json& json, const char* name) {
+  const Json* used = Find(json, "extensionsUsed");
   return used != nullptr && used->is_array() && std::find(used->begin(), used->end(), name) != used->end();
 }
 

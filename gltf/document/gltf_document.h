@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "document/json.h"
@@ -15,7 +16,13 @@ namespace lacerta {
 struct GltfDocument {
   Json json = Json::object();
   std::vector<Bytes> buffers;  // parallel to json["buffers"]
+  // Instead of `buffers`, where a host keeps them itself; such a document is only read.
+  std::vector<Span<const uint8_t>> borrowed_buffers;
 };
+
+// The JSON of an asset, checked as far as everything here relies on it. Fails with kInvalidData or kUnsupported
+// (version, meshopt compression).
+StatusOr<Json> ParseGltfJson(std::string_view text);
 
 // Reads a .glb (by its magic) or .gltf. External buffers are looked for in `folder`. A GLB whose BIN chunk was cut off
 // is accepted with the bytes that are there; what refers to the missing ones fails when it is looked at. Every
@@ -32,8 +39,8 @@ StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint
 // The same, but cut short where the buffer ends early. Fails when the view is not there.
 StatusOr<Span<const uint8_t>> AvailableViewBytes(const GltfDocument& document, uint64_t index);
 
-// Whether a name is in the document's extensionsUsed.
-bool UsesExtension(const GltfDocument& document, const char* name);
+// Whether a name is in the asset's extensionsUsed.
+bool UsesExtension(const Json& json, const char* name);
 
 // Adds a name to the list `key` ("extensionsUsed" or "extensionsRequired"), or takes it away together with an empty
 // list.

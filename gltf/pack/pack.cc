@@ -132,7 +132,7 @@ StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& opti
     return InvalidArgument(
         "the fallback \"draco\" needs the Draco form of the stream; choose another fallback for the custom form");
   }
-  if (UsesExtension(document, kProgressiveName)) {
+  if (UsesExtension(document.json, kProgressiveName)) {
     return Unsupported("the asset is packed already; unpack it first, or pack the original, which loses less");
   }
   LACERTA_ASSIGN_OR_RETURN(const std::vector<PrimitivePlan> plans, PlanPrimitives(document, options));

@@ -12,23 +12,6 @@
 namespace lacerta {
 namespace {
 
-struct Bounds {
-  Vec3f min, max;
-};
-
-Bounds BoundsOf(const std::vector<Vec3f>& positions) {
-  Bounds bounds;
-  if (positions.empty()) return bounds;
-  bounds = {positions[0], positions[0]};
-  for (const Vec3f& position : positions) {
-    for (int axis = 0; axis < 3; ++axis) {
-      bounds.min[axis] = std::min(bounds.min[axis], position[axis]);
-      bounds.max[axis] = std::max(bounds.max[axis], position[axis]);
-    }
-  }
-  return bounds;
-}
-
 // Decoders may differ in the last bits of a float, editors change far more.
 bool Near(const Bounds& a, const Bounds& b) {
   const float tolerance = 1e-5f * (Norm(a.max - a.min) + Norm(a.min) + Norm(a.max));
@@ -133,24 +116,42 @@ StatusOr<ProgressiveSurface> ReadStream(const GltfDocument& document, const Stat
 
 }  // namespace
 
-StatusOr<ProgressiveSurface> ReadSurface(const GltfDocument& document, const StatusOr<Progressive>& progressive,
-                                         const Place& place, const UnpackOptions& options) {
+Bounds BoundsOf(const std::vector<Vec3f>& positions) {
+  Bounds bounds;
+  if (positions.empty()) return bounds;
+  bounds = {positions[0], positions[0]};
+  for (const Vec3f& position : positions) {
+    for (int axis = 0; axis < 3; ++axis) {
+      bounds.min[axis] = std::min(bounds.min[axis], position[axis]);
+      bounds.max[axis] = std::max(bounds.max[axis], position[axis]);
+    }
+  }
+  return bounds;
+}
+
+StatusOr<ProgressiveSurface> ReadRefinedSurface(const GltfDocument& document, const StatusOr<Progressive>& progressive,
+                                                const Place& place, const UnpackOptions& options) {
   const Json& primitive = PrimitiveAt(document, place);
   StatusOr<ProgressiveSurface> surface = ReadStream(document, progressive, primitive, options);
   if (!surface.ok()) {
     if (!HasFallback(document, primitive)) return surface.status();
-    StatusOr<Primitive> fallback = ReadPrimitive(document, primitive, options.limits);
-    if (!fallback.ok()) {
-      return fallback.status().WithContext(surface.status().message() + "; its fallback cannot be used either");
-    }
     ProgressiveSurface drawn;
-    drawn.surface = Surface(fallback.value());
     drawn.from_fallback = true;
     drawn.note = "the fallback is used: " + surface.status().message();
     surface = std::move(drawn);
   }
   surface.value().mesh = place.mesh;
   surface.value().primitive = place.primitive;
+  return surface;
+}
+
+StatusOr<ProgressiveSurface> ReadSurface(const GltfDocument& document, const StatusOr<Progressive>& progressive,
+                                         const Place& place, const UnpackOptions& options) {
+  LACERTA_ASSIGN_OR_RETURN(ProgressiveSurface surface, ReadRefinedSurface(document, progressive, place, options));
+  if (!surface.from_fallback) return surface;
+  StatusOr<Primitive> fallback = ReadPrimitive(document, PrimitiveAt(document, place), options.limits);
+  if (!fallback.ok()) return fallback.status().WithContext(surface.note + "; but it is damaged too");
+  surface.surface = Surface(fallback.value());
   return surface;
 }
 

@@ -2,6 +2,8 @@
 #ifndef LACERTA_UNPACK_SURFACE_READER_H_
 #define LACERTA_UNPACK_SURFACE_READER_H_
 
+#include <vector>
+
 #include "document/gltf_document.h"
 #include "document/place.h"
 #include "extension/progressive.h"
@@ -9,8 +11,19 @@
 
 namespace lacerta {
 
-// `progressive` is what ParseProgressive said of the document. The primitive at `place` has the extension.
-// Fails only where neither the stream nor a fallback gives a mesh.
+struct Bounds {
+  Vec3f min, max;
+};
+Bounds BoundsOf(const std::vector<Vec3f>& positions);
+
+// The surface of the stream, or, where the stream is not to be used, `from_fallback` with the reason in `note` and an
+// empty surface: a host that has the fallback already need not read it. `progressive` is what ParseProgressive said of
+// the document. The primitive at `place` has the extension. Fails where there is neither.
+StatusOr<ProgressiveSurface> ReadRefinedSurface(const GltfDocument& document, const StatusOr<Progressive>& progressive,
+                                                const Place& place, const UnpackOptions& options);
+
+// The same with the geometry of the fallback where that is used. Fails only where neither the stream nor a fallback
+// gives a mesh.
 StatusOr<ProgressiveSurface> ReadSurface(const GltfDocument& document, const StatusOr<Progressive>& progressive,
                                          const Place& place, const UnpackOptions& options);
 
