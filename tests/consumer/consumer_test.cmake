@@ -41,7 +41,7 @@ run(${samples}/decode_progressively ${FOLDER}/encoded.drc)
 expect_output("level 0, [0-9]+ triangles")
 # The asset's Draco fallback, then its stream.
 if(EXISTS ${samples}/refine_with_tinygltf)
-  run(${FOLDER}/prefix/bin/lacerta pack ${FOLDER}/decoded_2.ply ${FOLDER}/packed.glb)
+  run(${FOLDER}/prefix/bin/lacerta pack ${FOLDER}/decoded_2.ply -o ${FOLDER}/packed.glb)
   run(${samples}/refine_with_tinygltf ${FOLDER}/packed.glb)
   expect_output("loaded: [^\n]*: [0-9]+ triangles\nrefined: [^\n]*: [0-9]+ triangles\n")
 endif()
