@@ -13,6 +13,7 @@ LIBRARIES = {
     "tbb": {"geometry", "remesh", "encoder", "draco"},
     "draco": {"draco", "gltf"},
     "nlohmann": {"gltf", "plugin"},
+    "tiny_gltf.h": {"gltf", "samples"},
     "CLI": {"plugin"},
     "unistd.h": {"plugin"},
 }
@@ -24,10 +25,10 @@ INSTALLED = {
     "surface_distance.h": "geometry",
     "clean.h": "remesh", "remesh.h": "remesh",
     "codec.h": "draco", "draco.h": "draco",
-    "file_io.h": "gltf", "mesh_file.h": "gltf", "gltf.h": "gltf",
+    "file_io.h": "gltf", "mesh_file.h": "gltf", "gltf.h": "gltf", "parsed_gltf.h": "gltf", "tinygltf.h": "gltf",
 }
 # Installed headers that may include a third-party library, and which.
-INSTALLED_LIBRARIES = {"draco.h": {"draco"}}
+INSTALLED_LIBRARIES = {"draco.h": {"draco"}, "tinygltf.h": {"tiny_gltf.h"}}
 
 GLTF_FOLDERS = {"document", "extension", "mesh_file", "pack", "unpack"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)

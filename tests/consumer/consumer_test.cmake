@@ -1,5 +1,5 @@
 # Installs the build tree BUILD, then configures, builds and runs the projects SOURCE and SAMPLES against it, all inside
-# FOLDER. STREAM is a stream of two levels.
+# FOLDER, with the same GENERATOR and COMPILER. STREAM is a stream of two levels.
 cmake_minimum_required(VERSION 3.21)
 file(REMOVE_RECURSE ${FOLDER})
 function(run)
@@ -20,7 +20,8 @@ if(SANITIZE)
   set(flags "-fsanitize=${SANITIZE}")
 endif()
 function(build source folder)
-  run(${CMAKE_COMMAND} -S ${source} -B ${folder} -DCMAKE_PREFIX_PATH=${FOLDER}/prefix -DCMAKE_BUILD_TYPE=Release
+  run(${CMAKE_COMMAND} -S ${source} -B ${folder} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
+      -DCMAKE_PREFIX_PATH=${FOLDER}/prefix -DCMAKE_BUILD_TYPE=Release
       "-DCMAKE_CXX_FLAGS=${flags}" -DCMAKE_FIND_PACKAGE_NO_PACKAGE_REGISTRY=ON)
   run(${CMAKE_COMMAND} --build ${folder})
 endfunction()
