@@ -41,7 +41,8 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, Disto
   Attempt attempt;
   LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code(std::exp(log_lambda), mode_));
   if (distortion == Distortion::kMeasured) {
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(attempt.stream.FinestMesh()));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance,
+                             meter_.Measure(attempt.stream.FinestMesh(), SurfaceDistanceOptions::RmsOnly()));
     attempt.psnr = Psnr(distance.Rms(), meter_.diagonal());
   } else {
     const double remesh_distance = DistanceOfPsnr(remesh_psnr_, meter_.diagonal());

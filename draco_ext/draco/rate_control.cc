@@ -108,11 +108,9 @@ class Ladder {
       LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate,
                                NormalMeshCandidate::Create(surface_, history_, RungSize(number), levels));
       rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(candidate));
-      SurfaceDistanceOptions rough;
-      rough.num_samples = 30'000;
-      rough.max_at_vertices = false;
+      constexpr uint64_t kRoughSamples = 30'000;
       const TriangleMesh remesh = rung->candidate->RemeshedSurface();
-      LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(remesh, rough));
+      LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(remesh, SurfaceDistanceOptions::RmsOnly(kRoughSamples)));
       rung->remesh_psnr = Psnr(distance.Rms(), meter_.diagonal());
       const double next_vertices = 4 * static_cast<double>(remesh.positions.size());
       if (rung->remesh_psnr > goal + kComfort || next_vertices > kMostVertices * num_input_) break;
@@ -146,6 +144,12 @@ class Ladder {
   std::map<int, Rung> rungs_;
 };
 
+// What is asked for: the target met, then quality at a rate and bytes at a quality; where neither meets it, nearer to it.
+bool IsBetter(const MeasuredStream& a, const MeasuredStream& b, const ResolvedTarget& target) {
+  if (a.meets_target != b.meets_target) return a.meets_target;
+  return target.is_rate == a.meets_target ? a.psnr > b.psnr : a.stream.size() < b.stream.size();
+}
+
 }  // namespace
 
 StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_input_vertices) {
@@ -177,13 +181,17 @@ StatusOr<ChosenStream> CodeAtTarget(const InputSurface& surface, const CollapseH
   Ladder ladder(surface, history, meter, target, mode);
   LACERTA_ASSIGN_OR_RETURN(const std::vector<Rung*> rungs, ladder.FindBest(progress));
   if (progress) progress(0.8, "meeting the target");
-  constexpr size_t kMostTries = 3;  // scores are estimates: the best may yet miss the target
+  // Scores are estimates: two candidates at a time are taken to the target until one meets it, and the better of them is kept.
+  constexpr size_t kAtATime = 2, kMost = 4;
   std::optional<ChosenStream> best;
-  for (size_t i = 0; i < std::min(kMostTries, rungs.size()); ++i) {
-    const Rung& rung = *rungs[i];
-    LACERTA_ASSIGN_OR_RETURN(MeasuredStream measured, rung.search->Meet());
-    const bool nearer = best && !best->measured.meets_target && (measured.meets_target || measured.psnr > best->measured.psnr);
-    if (!best || nearer) {
+  for (size_t first = 0; first < std::min(kMost, rungs.size()); first += kAtATime) {
+    const size_t count = std::min(kAtATime, rungs.size() - first);
+    std::vector<StatusOr<MeasuredStream>> met(count, InternalError("not tried"));
+    tbb::parallel_for(size_t{0}, count, [&](size_t i) { met[i] = rungs[first + i]->search->Meet(); });
+    for (size_t i = 0; i < count; ++i) {
+      LACERTA_ASSIGN_OR_RETURN(MeasuredStream measured, std::move(met[i]));
+      const Rung& rung = *rungs[first + i];
+      if (best && !IsBetter(measured, best->measured, target)) continue;
       best = {std::move(measured), rung.remesh_psnr, NormalShare(rung.candidate->normal_mesh())};
     }
     if (best->measured.meets_target) break;

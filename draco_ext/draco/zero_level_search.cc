@@ -19,7 +19,7 @@ StatusOr<ZeroLevelStream> CodeWithBits(const TriangleMesh& mesh, int bits, const
   result.stream = std::move(coded.stream);
   result.mesh = std::move(coded.mesh);
   // So coarse a grid may leave no area at all to measure: infinitely far then.
-  const StatusOr<SurfaceDistance> distance = meter.Measure(result.mesh);
+  const StatusOr<SurfaceDistance> distance = meter.Measure(result.mesh, SurfaceDistanceOptions::RmsOnly());
   result.distance = distance.ok() ? distance.value().Rms() : meter.diagonal();
   result.psnr = Psnr(result.distance, meter.diagonal());
   result.meets_target = target.is_rate ? static_cast<double>(result.stream.size()) <= target.bytes : result.psnr >= target.psnr;
@@ -83,7 +83,7 @@ StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mes
   for (auto vertices = static_cast<double>(mesh.positions.size()); vertices >= 4; vertices /= kSizeRatio) {
     if (vertices > most_vertices) continue;
     const TriangleMesh simplified = SimplifiedMesh(mesh, history, static_cast<uint32_t>(vertices));
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter.Measure(simplified));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter.Measure(simplified, SurfaceDistanceOptions::RmsOnly()));
     const double psnr = Psnr(distance.Rms(), meter.diagonal());
     const double wanted = target.is_rate ? coded.psnr : target.psnr;
     if (psnr < wanted && coded.meets_target) break;  // smaller ones are farther off still

@@ -11,7 +11,8 @@ BaseMesh RoundToLattice(const TriangleMesh& mesh, float step) {
   constexpr float kMaxLatticePoint = 65535.0f;
   const float least = std::max(extent / kMaxLatticePoint * 1.01f, std::numeric_limits<float>::min());
   int exponent = 0;
-  const float significand = std::frexp(std::max(step, least), &exponent);
+  const float wanted = std::min(std::max(least, step), std::numeric_limits<float>::max());  // in this order NaN gives `least`
+  const float significand = std::frexp(wanted, &exponent);
   const float shortened = std::ldexp(std::floor(std::ldexp(significand, 8)), exponent - 8);
   BaseMesh base;
   base.step = shortened >= least ? shortened : std::ldexp(std::ceil(std::ldexp(significand, 8)), exponent - 8);

@@ -12,15 +12,17 @@
 
 namespace lacerta {
 
-// The index of the bin that holds `value`, within what a stream can hold; 0 where the step is 0 (set not coded).
+// The index of the bin that holds `value`, within what a stream can hold; 0 where the step is 0 (set not coded) or the
+// value not a number.
 inline int32_t RoundToStep(float value, float step) {
-  if (!(step > 0)) return 0;
+  if (!(step > 0) || std::isnan(value)) return 0;
   constexpr auto kLimit = static_cast<float>(kMaxMagnitude);
   return static_cast<int32_t>(std::clamp(std::nearbyint(value / step), -kLimit, kLimit));
 }
 
 // `mesh` on the lattice of about `step` (never larger): the step is shortened to 8 significant bits, so that floats hold
-// lattice points exactly, and raised where floats of the mesh's size could not.
+// lattice points exactly, and raised where floats of the mesh's size could not. A step that is not a number counts as 0, an
+// infinite one as the largest float.
 BaseMesh RoundToLattice(const TriangleMesh& mesh, float step);
 
 }  // namespace lacerta

@@ -62,7 +62,7 @@ void BaseDomain::Reorder(const std::vector<uint32_t>& vertex_map, const std::vec
 }
 
 DomainPoint BaseDomain::FromInput(const DomainPoint& on_input) const {
-  const DomainPoint p = history_.Forward(on_input, time_);
+  const DomainPoint p = history_.Forward({on_input.face, ClampWeights(on_input.barycentric)}, time_);
   const uint32_t face = base_face_[p.face];
   DomainPoint result{face, {}};
   for (int k = 0; k < 3; ++k) result.barycentric[k] = p.barycentric[(k + rotation_[face]) % 3];
@@ -81,7 +81,7 @@ std::optional<ChartPoint> BaseDomain::ToChart(uint32_t center, const DomainPoint
     if (point.barycentric[k] != 1.0) continue;
     const Triangle& t = triangles_[center];
     const auto corner = std::find(t.begin(), t.end(), triangles_[point.face][k]);
-    if (corner == t.end()) return std::nullopt;
+    if (corner == t.end()) break;  // it may still be the far corner of a neighbor
     ChartPoint q;
     q[static_cast<int>(corner - t.begin())] = 1;
     return q;
@@ -104,7 +104,7 @@ std::optional<ChartPoint> BaseDomain::ToChart(uint32_t center, const DomainPoint
 
 std::optional<DomainPoint> BaseDomain::FromChart(uint32_t center, const ChartPoint& point) const {
   constexpr double kSlack = 1e-9;
-  if (point.x >= -kSlack && point.y >= -kSlack && point.z >= -kSlack) return DomainPoint{center, point};
+  if (point.x >= -kSlack && point.y >= -kSlack && point.z >= -kSlack) return DomainPoint{center, ClampWeights(point)};
   for (int k = 0; k < 3; ++k) {
     if (point[k] >= 0) continue;
     const double gamma = -point[k];
@@ -117,6 +117,7 @@ std::optional<DomainPoint> BaseDomain::FromChart(uint32_t center, const ChartPoi
     result.barycentric[apex] = gamma;
     result.barycentric[(apex + 1) % 3] = w2;
     result.barycentric[(apex + 2) % 3] = w1;
+    result.barycentric = ClampWeights(result.barycentric);
     return result;
   }
   return std::nullopt;

@@ -20,14 +20,13 @@ Vec3d BarycentricIn(const Vec2d& q, const Vec2d& a, const Vec2d& b, const Vec2d&
 
 double MinWeight(const Vec3d& w) { return std::min({w.x, w.y, w.z}); }
 
-// Rounding may put a point a hair outside of every triangle: back onto the nearest one.
-Vec3d ClampWeights(Vec3d w) {
-  w = {std::max(w.x, 0.0), std::max(w.y, 0.0), std::max(w.z, 0.0)};
+}  // namespace
+
+Vec3d ClampWeights(const Vec3d& weights) {
+  const Vec3d w = {std::max(weights.x, 0.0), std::max(weights.y, 0.0), std::max(weights.z, 0.0)};
   const double sum = w.x + w.y + w.z;
   return sum > 0 ? w * (1 / sum) : Vec3d{1, 0, 0};
 }
-
-}  // namespace
 
 CollapseHistory::CollapseHistory(const TriangleMesh& mesh)
     : faces_(mesh.triangles),

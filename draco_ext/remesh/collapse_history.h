@@ -23,6 +23,9 @@ struct DomainPoint {
   Vec3d barycentric;
 };
 
+// The nearest weights without one below zero, with sum one: rounding may put a point a hair outside of every triangle.
+Vec3d ClampWeights(const Vec3d& weights);
+
 // A point of a chart.
 struct Vec2d {
   double x = 0, y = 0;

@@ -12,6 +12,10 @@ namespace {
 
 constexpr double kNotSound = std::numeric_limits<double>::infinity();
 constexpr double kPi = 3.14159265358979323846;
+// Vertices of more faces are not removed before their neighbors are: the work per vertex is quadratic in its valence.
+constexpr size_t kMaxRing = 64;
+// Twice the area of an old face in its chart, whose radius is 1: below, points would not come back where they were.
+constexpr double kLeastChartArea = 1e-9;
 
 // The fan of faces around one vertex. ring[i] are its neighbors counterclockwise; faces[i] = (v, ring[i], ring[i+1]).
 struct Fan {
@@ -38,7 +42,7 @@ class Decimator {
 
  private:
   Fan FanOf(uint32_t v) const;
-  Candidate BestCandidate(uint32_t v, const Fan& fan) const;
+  Candidate BestCandidate(uint32_t v, const Fan& fan) const;  // of a vertex of at most kMaxRing faces
   double Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& chart, const std::vector<Vec3d>& old_normals, int kept) const;
   bool KeepsTopology(const Fan& fan, int kept) const;
   void Collapse(uint32_t v, const Fan& fan, int kept);
@@ -138,12 +142,21 @@ double Orientation(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
+// Whether every face of the fan has area in the chart. An angle is at most the sum of the others, so flattening opens it to 180
+// degrees at most, which it does at a vertex in the plane of its ring but outside of it.
+bool IsStarShaped(const std::vector<Vec2d>& chart) {
+  for (size_t i = 0; i < chart.size(); ++i) {
+    if (!(Orientation(Vec2d{}, chart[i], chart[(i + 1) % chart.size()]) > kLeastChartArea)) return false;
+  }
+  return true;
+}
+
 bool Decimator::KeepsTopology(const Fan& fan, int kept) const {
   const int k = static_cast<int>(fan.ring.size());
   const uint32_t u = fan.ring[kept], before = fan.ring[(kept + k - 1) % k], after = fan.ring[(kept + 1) % k];
   if (vertex_faces_[before].size() <= 3 || vertex_faces_[after].size() <= 3) return false;
   const int new_valence = static_cast<int>(vertex_faces_[u].size()) + k - 4;
-  if (new_valence < 3 || new_valence > options_.max_valence) return false;
+  if (new_valence < 3 || new_valence > std::min(options_.max_valence, static_cast<int>(kMaxRing))) return false;
   for (const uint32_t f : vertex_faces_[u]) {  // link condition: no neighbor in common but those two
     for (const uint32_t w : history_.face(f)) {
       if (w == u || w == before || w == after) continue;
@@ -193,6 +206,7 @@ Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
   }
   const std::vector<Vec2d> chart = FlattenFan(positions_[v], fan, positions_);
   Candidate best;
+  if (!IsStarShaped(chart)) return best;
   for (int j = 0; j < k; ++j) {
     const double cost = Cost(v, fan, chart, old_normals, j);
     if (cost < best.cost) best = {cost, j};
@@ -201,7 +215,7 @@ Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
 }
 
 void Decimator::Push(uint32_t v) {
-  const Candidate candidate = BestCandidate(v, FanOf(v));
+  const Candidate candidate = vertex_faces_[v].size() <= kMaxRing ? BestCandidate(v, FanOf(v)) : Candidate();
   blocked_[v] = candidate.kept < 0;
   if (!blocked_[v]) heap_.push({candidate.cost, v});
 }
@@ -213,8 +227,8 @@ void Decimator::Collapse(uint32_t v, const Fan& fan, int kept) {
   quadrics_[u] += quadrics_[v];
   for (int i = 0; i < k; ++i) {
     std::vector<uint32_t>& faces = vertex_faces_[fan.ring[i]];
-    const auto gone = [&](uint32_t f) { return std::find(fan.faces.begin(), fan.faces.end(), f) != fan.faces.end(); };
-    faces.erase(std::remove_if(faces.begin(), faces.end(), gone), faces.end());
+    const uint32_t before = fan.faces[(i + k - 1) % k], after = fan.faces[i];
+    faces.erase(std::remove_if(faces.begin(), faces.end(), [&](uint32_t f) { return f == before || f == after; }), faces.end());
   }
   double covered = 0, new_area = 0;
   for (const uint32_t f : fan.faces) covered += covered_area_[f];
@@ -257,6 +271,7 @@ CollapseHistory Decimator::Run() {
 }  // namespace
 
 CollapseHistory Decimate(const TriangleMesh& mesh, const DecimateOptions& options) {
+  if (mesh.triangles.empty()) return CollapseHistory(mesh);
   return Decimator(mesh, options).Run();
 }
 

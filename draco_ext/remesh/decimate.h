@@ -13,7 +13,7 @@ namespace lacerta {
 
 struct DecimateOptions {
   uint32_t target_vertices = 16;   // stop there; earlier where no collapse is sound any more
-  int max_valence = 12;            // of a base vertex
+  int max_valence = 12;            // of a base vertex, at most 64; one that the input has more of may stay
   double min_normal_cosine = 0.2;  // between a new triangle and the one it replaces
 };
 

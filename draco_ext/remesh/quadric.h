@@ -2,13 +2,16 @@
 #ifndef LACERTA_REMESH_QUADRIC_H_
 #define LACERTA_REMESH_QUADRIC_H_
 
+#include <Eigen/Core>
+
 #include "lacerta/vec3.h"
 
 namespace lacerta {
 
+// p -> p' quadratic p + 2 linear' p + constant.
 struct Quadric {
-  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;  // quadratic part
-  Vec3d linear;
+  Eigen::Matrix3d quadratic = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero();
   double constant = 0;
 
   // The plane of a triangle, weighted by its area; zero for a triangle without area.
@@ -16,13 +19,13 @@ struct Quadric {
     const Vec3d cross = Cross(b - a, c - a);
     const double norm = Norm(cross);
     if (!(norm > 0)) return {};
-    const Vec3d n = cross * (1 / norm);
-    const double d = -Dot(n, a), w = norm / 2;
-    return {w * n.x * n.x, w * n.x * n.y, w * n.x * n.z, w * n.y * n.y, w * n.y * n.z, w * n.z * n.z, n * (w * d), w * d * d};
+    const Eigen::Vector3d n = AsEigen(cross) / norm;
+    const double d = -n.dot(AsEigen(a)), area = norm / 2;
+    return {area * n * n.transpose(), area * d * n, area * d * d};
   }
 
   Quadric& operator+=(const Quadric& b) {
-    xx += b.xx, xy += b.xy, xz += b.xz, yy += b.yy, yz += b.yz, zz += b.zz;
+    quadratic += b.quadratic;
     linear += b.linear;
     constant += b.constant;
     return *this;
@@ -30,10 +33,13 @@ struct Quadric {
 
   // Weighted squared distance of p; not below zero, whatever the rounding.
   double Evaluate(const Vec3d& p) const {
-    const double value = xx * p.x * p.x + yy * p.y * p.y + zz * p.z * p.z +
-                         2 * (xy * p.x * p.y + xz * p.x * p.z + yz * p.y * p.z + Dot(linear, p)) + constant;
+    const auto x = AsEigen(p);
+    const double value = x.dot(quadratic * x) + 2 * linear.dot(x) + constant;
     return value > 0 ? value : 0;
   }
+
+ private:
+  static Eigen::Map<const Eigen::Vector3d> AsEigen(const Vec3d& p) { return Eigen::Map<const Eigen::Vector3d>(&p.x); }
 };
 
 }  // namespace lacerta

@@ -1,4 +1,5 @@
-# Installs the build tree BUILD, then configures, builds and runs the project SOURCE against it, all inside FOLDER.
+# Installs the build tree BUILD, then configures, builds and runs the projects SOURCE and SAMPLES against it, all inside
+# FOLDER. STREAM is a stream of two levels.
 cmake_minimum_required(VERSION 3.21)
 file(REMOVE_RECURSE ${FOLDER})
 function(run)
@@ -6,14 +7,34 @@ function(run)
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "${ARGN}: ${result}\n${out}")
   endif()
+  set(output "${out}" PARENT_SCOPE)
+endfunction()
+function(expect_output regex)
+  if(NOT output MATCHES "${regex}")
+    message(FATAL_ERROR "expected ${regex}, got\n${output}")
+  endif()
 endfunction()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${FOLDER}/prefix)
 set(flags "")
 if(SANITIZE)
   set(flags "-fsanitize=${SANITIZE}")
 endif()
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${FOLDER}/build -DCMAKE_PREFIX_PATH=${FOLDER}/prefix -DCMAKE_BUILD_TYPE=Release
-    "-DCMAKE_CXX_FLAGS=${flags}" -DCMAKE_FIND_PACKAGE_NO_PACKAGE_REGISTRY=ON)
-run(${CMAKE_COMMAND} --build ${FOLDER}/build)
+function(build source folder)
+  run(${CMAKE_COMMAND} -S ${source} -B ${folder} -DCMAKE_PREFIX_PATH=${FOLDER}/prefix -DCMAKE_BUILD_TYPE=Release
+      "-DCMAKE_CXX_FLAGS=${flags}" -DCMAKE_FIND_PACKAGE_NO_PACKAGE_REGISTRY=ON)
+  run(${CMAKE_COMMAND} --build ${folder})
+endfunction()
+
+build(${SOURCE} ${FOLDER}/build)
 run(${FOLDER}/build/consumer)
 run(${FOLDER}/build/decoder_consumer)
+
+set(samples ${FOLDER}/samples)
+build(${SAMPLES} ${samples})
+run(${samples}/decode_progressively ${STREAM} ${FOLDER}/decoded)
+expect_output("level 0, 60 triangles\n.*level 1, 240 triangles\n.*level 2, 960 triangles\n")
+# What was decoded last goes back in; what comes out has to decode.
+run(${samples}/encode ${FOLDER}/decoded_2.ply ${FOLDER}/encoded.drc 60)
+expect_output("level 0: [0-9]+ triangles in the first [0-9]+ bytes")
+run(${samples}/decode_progressively ${FOLDER}/encoded.drc)
+expect_output("level 0, [0-9]+ triangles")

@@ -24,6 +24,9 @@ struct SurfaceDistanceOptions {
   bool max_at_vertices = true;
 
   static constexpr uint64_t kMaxSamples = 1'000'000'000;
+
+  // For a caller that has no use for the maximum.
+  static SurfaceDistanceOptions RmsOnly(uint64_t samples = 200'000) { return {samples, 0, false}; }
 };
 
 // One direction of the distance, in model units.

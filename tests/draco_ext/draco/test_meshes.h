@@ -7,9 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +14,7 @@
 #include "draco_ext/encoder/test_streams.h"
 #include "lacerta/decoder.h"
 #include "lacerta/mesh.h"
+#include "shapes/real_meshes.h"
 
 namespace lacerta::testing {
 
@@ -28,44 +26,6 @@ inline BaseMesh TwoOctahedra() {
   base.lattice.insert(base.lattice.end(), one.lattice.begin(), one.lattice.end());
   for (const Triangle& t : one.triangles) base.triangles.push_back({{t[0] + count, t[1] + count, t[2] + count}});
   return base;
-}
-
-// A mesh from a ply file as libdraco and most tools write it: binary, little endian, float vertices, uchar/int faces.
-inline std::optional<TriangleMesh> ReadBinaryPly(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string line, element;
-  size_t num_vertices = 0, num_triangles = 0, num_properties = 0;
-  while (std::getline(in, line) && line != "end_header") {
-    std::istringstream words(line);
-    std::string keyword;
-    words >> keyword;
-    if (keyword == "element") {
-      size_t count = 0;
-      words >> element >> count;
-      (element == "vertex" ? num_vertices : num_triangles) = count;
-    } else if (keyword == "property" && element == "vertex") {
-      ++num_properties;
-    }
-  }
-  TriangleMesh mesh;
-  std::vector<float> row(num_properties);
-  for (size_t v = 0; v < num_vertices && num_properties >= 3; ++v) {
-    in.read(reinterpret_cast<char*>(row.data()), static_cast<std::streamsize>(num_properties * sizeof(float)));
-    mesh.positions.push_back({row[0], row[1], row[2]});
-  }
-  for (size_t f = 0; f < num_triangles; ++f) {
-    char corners = 0;
-    Triangle t{};
-    in.read(&corners, 1);
-    in.read(reinterpret_cast<char*>(t.data()), sizeof(t));
-    if (corners != 3) return std::nullopt;
-    mesh.triangles.push_back(t);
-  }
-  return in.good() && !mesh.triangles.empty() ? std::optional(std::move(mesh)) : std::nullopt;
-}
-
-inline std::optional<TriangleMesh> RealMesh(const std::string& name) {
-  return ReadBinaryPly(std::string(LACERTA_TEST_DATA_DIR) + "/" + name);
 }
 
 // A closed real mesh rounded to a lattice of 2^bits steps along its longest side.
