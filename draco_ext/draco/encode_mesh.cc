@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -47,12 +48,12 @@ EncodedMesh FromZeroLevel(ZeroLevelStream zero, EncodeReport report, std::string
   return {std::move(zero.stream), {size}, std::move(report)};
 }
 
-StatusOr<EncodedMesh> FromRefinement(const SurfaceDistanceMeter& meter, const ChosenStream& chosen, EncodeReport report) {
+StatusOr<EncodedMesh> FromRefinement(const SurfaceDistanceMeter& meter, const ChosenStream& chosen, EncodeReport report, std::string reason) {
   report.progressive = true;
+  report.reason = std::move(reason);
   report.normal_share = chosen.normal_share;
   report.remesh_psnr = chosen.remesh_psnr;
   const MeasuredStream& coded = chosen.measured;
-  if (!coded.meets_target) report.reason = "the target is out of reach; this is the nearest found";
   LACERTA_RETURN_IF_ERROR(ReportLevels(meter, coded.stream, &report));
   EncodedMesh result;
   result.stream = coded.stream.base;
@@ -60,6 +61,29 @@ StatusOr<EncodedMesh> FromRefinement(const SurfaceDistanceMeter& meter, const Ch
   result.part_sizes = coded.stream.part_sizes;
   result.report = std::move(report);
   return result;
+}
+
+// The target of a stream in Draco form that meets `target` in the form asked for.
+ResolvedTarget LessForm(ResolvedTarget target, StreamForm form) {
+  if (!target.is_rate || form == StreamForm::kDraco) return target;
+  const Bytes base(static_cast<size_t>(std::min(target.bytes, 1e5)));  // its length is in the custom form
+  target.bytes -= static_cast<double>(WriteCustomForm({base, {}}).size() - base.size());
+  return target;
+}
+
+// Why a simplified mesh was taken.
+std::string ReasonForSimpler(const ZeroLevelStream& simpler, const ResolvedTarget& target) {
+  if (!simpler.meets_target) return "the target is out of reach; a simplified mesh in stock Draco form comes nearest";
+  return std::string("a simplified mesh in stock Draco form is ") + (target.is_rate ? "closer to the surface" : "smaller");
+}
+
+// Why a stream misses the target or leaves more of it than promised; empty where it does neither.
+std::string ReasonForMiss(const MeasuredStream& coded, const ResolvedTarget& target) {
+  if (!coded.meets_target) return "the target is out of reach; this is the nearest found";
+  const auto bytes = static_cast<double>(coded.stream.size());
+  if (target.is_rate && bytes < 0.98 * target.bytes) return "no stream found that fills the bytes; this is the nearest";
+  if (!target.is_rate && coded.psnr >= target.psnr + 0.3) return "no stream found with less to spare; this is the nearest";
+  return "";
 }
 
 // Draco form to the form asked for: the custom form only adds to the base section.
@@ -83,7 +107,8 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   };
   LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(input));
   const TriangleMesh& mesh = cleaned.mesh;
-  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget target, ResolveTarget(options.target, mesh.positions.size()));
+  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget asked, ResolveTarget(options.target, mesh.positions.size()));
+  const ResolvedTarget target = LessForm(asked, options.form);
   LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(mesh));
   EncodeReport report;
   report.clean = cleaned.report;
@@ -93,7 +118,8 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
 
   if (const Status why_not = CheckRemeshable(mesh); !why_not.ok()) {
     LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, CodeZeroLevel(mesh, meter, target));
-    LACERTA_ASSIGN_OR_RETURN(EncodedMesh result, InForm(options.form, FromZeroLevel(std::move(zero), std::move(report), why_not.message())));
+    const std::string reason = why_not.message() + (zero.meets_target ? "" : "; the target is out of reach, this is the nearest");
+    LACERTA_ASSIGN_OR_RETURN(EncodedMesh result, InForm(options.form, FromZeroLevel(std::move(zero), std::move(report), reason)));
     return result;
   }
   progress(0.0, "simplifying");
@@ -102,8 +128,9 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen, CodeAtTarget(surface, history, meter, target, options.mode, options.progress));
   progress(0.95, "comparing with Draco");
   LACERTA_ASSIGN_OR_RETURN(std::optional<ZeroLevelStream> simpler, SimplerIfBetter(mesh, history, meter, target, chosen.measured));
-  if (simpler) return InForm(options.form, FromZeroLevel(std::move(*simpler), std::move(report), "a simplified mesh in stock Draco form is smaller"));
-  LACERTA_ASSIGN_OR_RETURN(EncodedMesh result, FromRefinement(meter, chosen, std::move(report)));
+  const std::string reason = simpler ? ReasonForSimpler(*simpler, target) : ReasonForMiss(chosen.measured, target);
+  if (simpler) return InForm(options.form, FromZeroLevel(std::move(*simpler), std::move(report), reason));
+  LACERTA_ASSIGN_OR_RETURN(EncodedMesh result, FromRefinement(meter, chosen, std::move(report), reason));
   progress(1.0, "done");
   return InForm(options.form, std::move(result));
 }

@@ -24,8 +24,8 @@ namespace {
 using ::testing::HasSubstr;
 using Kind = EncodeTarget::Kind;
 
-TriangleMesh Scan() { return shapes::BumpySphere(4, 0.2f, 0.002f); }
-TriangleMesh Ring() { return shapes::Torus(64, 32); }
+TriangleMesh Scan() { return shapes::BumpySphere(3, 0.2f, 0.002f); }
+TriangleMesh Ring() { return shapes::Torus(40, 20); }
 
 EncodeOptions OptionsFor(Kind kind, double value, StreamForm form = StreamForm::kDraco) {
   EncodeOptions options;
@@ -50,7 +50,7 @@ double DecodedPsnr(const TriangleMesh& original, const Bytes& stream, int level)
 
 TEST(EncodeMeshTest, KeepsPsnrTargetsFromBothSides) {
   for (const TriangleMesh& mesh : {Scan(), Ring()}) {
-    for (const double target : {52.0, 60.0}) {
+    for (const double target : {46.0, 52.0}) {
       const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kPsnr, target));
       ASSERT_TRUE(encoded.report.progressive) << encoded.report.reason;
       const int finest = static_cast<int>(encoded.report.levels.size()) - 1;
@@ -65,7 +65,7 @@ TEST(EncodeMeshTest, KeepsPsnrTargetsFromBothSides) {
 TEST(EncodeMeshTest, KeepsRateTargetsFromBothSides) {
   const TriangleMesh mesh = Scan();
   const auto num_vertices = static_cast<double>(mesh.positions.size());
-  for (const double bits_per_vertex : {1.0, 3.0}) {
+  for (const double bits_per_vertex : {4.0, 7.0}) {
     const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kBitsPerVertex, bits_per_vertex));
     ASSERT_TRUE(encoded.report.progressive) << encoded.report.reason;
     const double rate = 8 * static_cast<double>(encoded.stream.size()) / num_vertices;
@@ -75,23 +75,23 @@ TEST(EncodeMeshTest, KeepsRateTargetsFromBothSides) {
 }
 
 TEST(EncodeMeshTest, CustomFormKeepsRateTargetsToo) {
-  const EncodedMesh encoded = EncodeOrDie(Scan(), OptionsFor(Kind::kBytes, 800, StreamForm::kCustom));
+  const EncodedMesh encoded = EncodeOrDie(Scan(), OptionsFor(Kind::kBytes, 500, StreamForm::kCustom));
   ASSERT_TRUE(encoded.report.progressive) << encoded.report.reason;
-  EXPECT_LE(encoded.stream.size(), 800u);
-  EXPECT_GE(encoded.stream.size(), 784u);
+  EXPECT_LE(encoded.stream.size(), 500u);
+  EXPECT_GE(encoded.stream.size(), 490u);
   EXPECT_EQ(encoded.report.levels.back().bytes, encoded.stream.size());
 }
 
 TEST(EncodeMeshTest, ErrorTargetIsThePsnrTargetInAnotherUnit) {
-  const EncodedMesh error = EncodeOrDie(Scan(), OptionsFor(Kind::kError, 1e-3));
-  const EncodedMesh psnr = EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 60));
-  EXPECT_LE(error.report.levels.back().error, 1e-3 * error.report.diagonal);
+  const EncodedMesh error = EncodeOrDie(Scan(), OptionsFor(Kind::kError, 3.1622776601683794e-3));
+  const EncodedMesh psnr = EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 50));
+  EXPECT_LE(error.report.levels.back().error, 3.1622776601683795e-3 * error.report.diagonal);
   EXPECT_NEAR(error.report.levels.back().psnr, psnr.report.levels.back().psnr, 0.3);
 }
 
 TEST(EncodeMeshTest, ReportsWhatTheStreamHolds) {
   const TriangleMesh mesh = Scan();
-  const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kPsnr, 55));
+  const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kPsnr, 50));
   const EncodeReport& report = encoded.report;
   EXPECT_EQ(report.input_vertices, mesh.positions.size());
   EXPECT_EQ(report.input_triangles, mesh.triangles.size());
@@ -112,7 +112,7 @@ TEST(EncodeMeshTest, ReportsWhatTheStreamHolds) {
 
 TEST(EncodeMeshTest, EveryPrefixDecodesToItsLastCompleteLevel) {
   for (const StreamForm form : {StreamForm::kDraco, StreamForm::kCustom}) {
-    const EncodedMesh encoded = EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 48, form));
+    const EncodedMesh encoded = EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 44, form));
     ASSERT_GE(encoded.part_sizes.size(), 3u);
     size_t complete = encoded.part_sizes[0];
     int level = 0;
@@ -129,14 +129,16 @@ TEST(EncodeMeshTest, EveryPrefixDecodesToItsLastCompleteLevel) {
       }
       ASSERT_TRUE(decoded.ok()) << "prefix of " << length << " bytes: " << decoded.status().message();
       EXPECT_EQ(decoded.value().level, level) << "prefix of " << length << " bytes";
-      EXPECT_TRUE(decoded.value().refinement.ok()) << decoded.value().refinement.message();
+      // A cut within a segment is reported; a stream that ends with its base is a stock stream, whole as it is.
+      const bool whole = length == encoded.part_sizes[0] || length == encoded.stream.size();
+      EXPECT_EQ(decoded.value().refinement.ok(), whole) << decoded.value().refinement.message();
     }
     EXPECT_EQ(level, static_cast<int>(encoded.part_sizes.size()) - 1);
   }
 }
 
 TEST(EncodeMeshTest, SameBytesOnOneThreadAndOnTwo) {
-  const EncodeOptions options = OptionsFor(Kind::kPsnr, 58);
+  const EncodeOptions options = OptionsFor(Kind::kPsnr, 50);
   std::vector<Bytes> streams;
   for (const size_t threads : {1, 2}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -209,11 +211,11 @@ TEST(EncodeMeshTest, AnUnreachableTargetIsReportedAsSuch) {
 }
 
 TEST(EncodeMeshTest, PaperModeKeepsItsTargetToo) {
-  EncodeOptions options = OptionsFor(Kind::kPsnr, 55);
+  EncodeOptions options = OptionsFor(Kind::kPsnr, 50);
   options.mode = EncodeMode::kPaper;
   const EncodedMesh encoded = EncodeOrDie(Scan(), options);
-  EXPECT_GE(encoded.report.levels.back().psnr, 55.0);
-  EXPECT_GE(encoded.stream.size(), EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 55)).stream.size());
+  EXPECT_GE(encoded.report.levels.back().psnr, 50.0);
+  EXPECT_GE(encoded.stream.size(), EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 50)).stream.size());
 }
 
 TEST(EncodeMeshTest, TheDracoPairAgreesInBothForms) {

@@ -58,16 +58,16 @@ struct Coder {
 };
 
 TEST(CodeAtTargetTest, BasesGrowWithTheQualityAskedFor) {
-  const Coder coder(shapes::BumpySphere(5, 0.2f, 0.003f));
-  const ChosenStream coarse = coder.Code({false, 0, 45}), fine = coder.Code({false, 0, 65});
+  const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
+  const ChosenStream coarse = coder.Code({false, 0, 40}), fine = coder.Code({false, 0, 56});
   EXPECT_TRUE(coarse.measured.meets_target);
   EXPECT_TRUE(fine.measured.meets_target);
   EXPECT_LE(coarse.measured.stream.decoded.num_base_vertices, fine.measured.stream.decoded.num_base_vertices);
-  EXPECT_GE(fine.measured.stream.size(), 3 * coarse.measured.stream.size());
+  EXPECT_GE(fine.measured.stream.size(), 2 * coarse.measured.stream.size());
 }
 
 TEST(CodeAtTargetTest, ReportsStages) {
-  const Coder coder(shapes::BumpySphere(4, 0.2f));
+  const Coder coder(shapes::BumpySphere(3, 0.2f));
   std::vector<double> shares;
   const auto progress = [&](double share, const char* stage) {
     EXPECT_STRNE(stage, "");
