@@ -24,8 +24,8 @@ namespace {
 using ::testing::HasSubstr;
 using Kind = EncodeTarget::Kind;
 
-TriangleMesh Scan() { return shapes::BumpySphere(3, 0.2f, 0.002f); }
-TriangleMesh Ring() { return shapes::Torus(40, 20); }
+TriangleMesh Scan() { return shapes::BumpySphere(4, 0.2f, 0.002f); }
+TriangleMesh Ring() { return shapes::Torus(64, 32); }
 
 EncodeOptions OptionsFor(Kind kind, double value, StreamForm form = StreamForm::kDraco) {
   EncodeOptions options;
@@ -50,7 +50,7 @@ double DecodedPsnr(const TriangleMesh& original, const Bytes& stream, int level)
 
 TEST(EncodeMeshTest, KeepsPsnrTargetsFromBothSides) {
   for (const TriangleMesh& mesh : {Scan(), Ring()}) {
-    for (const double target : {46.0, 52.0}) {
+    for (const double target : {54.0}) {
       const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kPsnr, target));
       ASSERT_TRUE(encoded.report.progressive) << encoded.report.reason;
       const int finest = static_cast<int>(encoded.report.levels.size()) - 1;
@@ -65,7 +65,7 @@ TEST(EncodeMeshTest, KeepsPsnrTargetsFromBothSides) {
 TEST(EncodeMeshTest, KeepsRateTargetsFromBothSides) {
   const TriangleMesh mesh = Scan();
   const auto num_vertices = static_cast<double>(mesh.positions.size());
-  for (const double bits_per_vertex : {4.0, 7.0}) {
+  for (const double bits_per_vertex : {2.0}) {
     const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kBitsPerVertex, bits_per_vertex));
     ASSERT_TRUE(encoded.report.progressive) << encoded.report.reason;
     const double rate = 8 * static_cast<double>(encoded.stream.size()) / num_vertices;
@@ -75,10 +75,10 @@ TEST(EncodeMeshTest, KeepsRateTargetsFromBothSides) {
 }
 
 TEST(EncodeMeshTest, CustomFormKeepsRateTargetsToo) {
-  const EncodedMesh encoded = EncodeOrDie(Scan(), OptionsFor(Kind::kBytes, 500, StreamForm::kCustom));
+  const EncodedMesh encoded = EncodeOrDie(Scan(), OptionsFor(Kind::kBytes, 800, StreamForm::kCustom));
   ASSERT_TRUE(encoded.report.progressive) << encoded.report.reason;
-  EXPECT_LE(encoded.stream.size(), 500u);
-  EXPECT_GE(encoded.stream.size(), 490u);
+  EXPECT_LE(encoded.stream.size(), 800u);
+  EXPECT_GE(encoded.stream.size(), 784u);
   EXPECT_EQ(encoded.report.levels.back().bytes, encoded.stream.size());
 }
 
