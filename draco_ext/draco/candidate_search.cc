@@ -22,7 +22,7 @@ constexpr double kUsualPsnr = 70;        // where to begin when only the rate is
 constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.24;
 constexpr double kBytesSlack = 0.018;
 constexpr int kScoreTries = 2;
-constexpr int kMeetTries = 14;
+constexpr int kMeetTries = 16;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogByte
 
 StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, Distortion distortion) {
   Attempt attempt;
-  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code(std::exp(log_lambda), mode_));
+  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code(std::exp(kept_steps_.value_or(log_lambda)), std::exp(log_lambda), mode_));
   if (distortion == Distortion::kMeasured) {
     LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance,
                              meter_.Measure(attempt.stream.FinestMesh(), SurfaceDistanceOptions::RmsOnly()));
@@ -53,24 +53,44 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, Disto
   return attempt;
 }
 
+CandidateSearch::Bracket CandidateSearch::AroundGoal() const {
+  Bracket bracket{values_.end(), values_.end()};
+  for (auto it = values_.begin(); it != values_.end(); ++it) {
+    if (it->second >= Goal()) bracket.above = it;
+    if (it->second < Goal() && bracket.below == values_.end()) bracket.below = it;
+  }
+  return bracket;
+}
+
+bool CandidateSearch::IsBracket(const Bracket& b) const {
+  return b.above != values_.end() && b.below != values_.end() && b.below->first > b.above->first;
+}
+
 // The next ln(lambda) to try: between the two attempts around the goal, or beyond the nearest one.
 double CandidateSearch::NextGuess() const {
   if (values_.empty()) return start_;
-  const double goal = Goal();
-  auto above = values_.end(), below = values_.end();  // of the goal; values fall as lambda grows
-  for (auto it = values_.begin(); it != values_.end(); ++it) {
-    if (it->second >= goal) above = it;
-    if (it->second < goal && below == values_.end()) below = it;
-  }
-  if (above != values_.end() && below != values_.end() && below->first > above->first) {
+  const auto [above, below] = AroundGoal();
+  if (IsBracket({above, below})) {
     const double width = below->first - above->first;
-    const double share = (above->second - goal) / (above->second - below->second);
+    const double share = (above->second - Goal()) / (above->second - below->second);
     return above->first + width * std::clamp(share, 0.08, 0.92);
   }
   const auto nearest = above != values_.end() ? above : below;
-  const double step = (goal - nearest->second) / TypicalSlope();
+  const double step = (Goal() - nearest->second) / TypicalSlope();
   // Beyond all attempts: somewhat farther than it seems, so that the goal gets bracketed.
   return nearest->first + std::clamp(1.1 * step, -4.0, 4.0) + (step < 0 ? -0.02 : 0.02);
+}
+
+// Where the attempts on both sides of the goal are hardly apart in lambda and still miss it, the steps jump between them: those of
+// the finer side are kept, and the descent makes up the rest.
+void CandidateSearch::KeepStepsAtJump() {
+  constexpr double kHardlyApart = 0.06;
+  if (kept_steps_ || mode_ == EncodeMode::kPaper) return;
+  const Bracket bracket = AroundGoal();
+  if (!IsBracket(bracket) || bracket.below->first - bracket.above->first > kHardlyApart) return;
+  const std::pair<double, double> finer = *bracket.above;
+  kept_steps_ = finer.first;
+  values_ = {{finer.first, finer.second}};
 }
 
 // A finer slope no longer raises the PSNR: the remesh itself is the limit.
@@ -108,6 +128,7 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
     const bool nearer = best && std::fabs(attempt.value - Goal()) < std::fabs(best->value - Goal());
     if (!best || (keeps_promise(attempt) == keeps_promise(*best) ? nearer : keeps_promise(attempt))) best = std::move(attempt);
     if (met) break;
+    KeepStepsAtJump();
   }
   MeasuredStream result;
   result.meets_target = keeps_promise(*best);

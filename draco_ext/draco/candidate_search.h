@@ -3,6 +3,7 @@
 #define LACERTA_DRACO_CANDIDATE_SEARCH_H_
 
 #include <map>
+#include <optional>
 
 #include "draco/normal_mesh_candidate.h"
 #include "lacerta/codec.h"
@@ -50,8 +51,16 @@ class CandidateSearch {
   StatusOr<Attempt> Try(double log_lambda, Distortion distortion);
   double Goal() const;
   double TypicalSlope() const;
+  // The attempts next to the goal: the coarsest that is not under it and the finest that is under it; values fall as lambda
+  // grows, but for noise. Either may be missing.
+  struct Bracket {
+    std::map<double, double>::const_iterator above, below;
+  };
+  Bracket AroundGoal() const;
+  bool IsBracket(const Bracket& bracket) const;
   double NextGuess() const;
   bool CannotReach() const;
+  void KeepStepsAtJump();
 
   const NormalMeshCandidate& candidate_;
   const double remesh_psnr_;
@@ -60,6 +69,8 @@ class CandidateSearch {
   const EncodeMode mode_;
   double start_;                     // ln(lambda) to begin with
   std::map<double, double> values_;  // value by ln(lambda) of the attempts so far
+  // Where set, the steps stay at this ln(lambda), and what is tried is the slope of the descent alone.
+  std::optional<double> kept_steps_;
 };
 
 }  // namespace lacerta

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -47,12 +48,12 @@ EncodedMesh FromZeroLevel(ZeroLevelStream zero, EncodeReport report, std::string
   return {std::move(zero.stream), {size}, std::move(report)};
 }
 
-StatusOr<EncodedMesh> FromRefinement(const SurfaceDistanceMeter& meter, const ChosenStream& chosen, EncodeReport report) {
+StatusOr<EncodedMesh> FromRefinement(const SurfaceDistanceMeter& meter, const ChosenStream& chosen, EncodeReport report, std::string reason) {
   report.progressive = true;
+  report.reason = std::move(reason);
   report.normal_share = chosen.normal_share;
   report.remesh_psnr = chosen.remesh_psnr;
   const MeasuredStream& coded = chosen.measured;
-  if (!coded.meets_target) report.reason = "the target is out of reach; this is the nearest found";
   LACERTA_RETURN_IF_ERROR(ReportLevels(meter, coded.stream, &report));
   EncodedMesh result;
   result.stream = coded.stream.base;
@@ -60,6 +61,29 @@ StatusOr<EncodedMesh> FromRefinement(const SurfaceDistanceMeter& meter, const Ch
   result.part_sizes = coded.stream.part_sizes;
   result.report = std::move(report);
   return result;
+}
+
+// The target of a stream in Draco form that meets `target` in the form asked for.
+ResolvedTarget LessForm(ResolvedTarget target, StreamForm form) {
+  if (!target.is_rate || form == StreamForm::kDraco) return target;
+  const Bytes base(static_cast<size_t>(std::min(target.bytes, 1e5)));  // its length is in the custom form
+  target.bytes -= static_cast<double>(WriteCustomForm({base, {}}).size() - base.size());
+  return target;
+}
+
+// Why a simplified mesh was taken.
+std::string ReasonForSimpler(const ZeroLevelStream& simpler, const ResolvedTarget& target) {
+  if (!simpler.meets_target) return "the target is out of reach; a simplified mesh in stock Draco form comes nearest";
+  return std::string("a simplified mesh in stock Draco form is ") + (target.is_rate ? "closer to the surface" : "smaller");
+}
+
+// Why a stream misses the target or leaves more of it than promised; empty where it does neither.
+std::string ReasonForMiss(const MeasuredStream& coded, const ResolvedTarget& target) {
+  if (!coded.meets_target) return "the target is out of reach; this is the nearest found";
+  const auto bytes = static_cast<double>(coded.stream.size());
+  if (target.is_rate && bytes < 0.98 * target.bytes) return "no stream found that fills the bytes; this is the nearest";
+  if (!target.is_rate && coded.psnr >= target.psnr + 0.3) return "no stream found with less to spare; this is the nearest";
+  return "";
 }
 
 // Draco form to the form asked for: the custom form only adds to the base section.
@@ -90,8 +114,9 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
   progress(0.95, "comparing with Draco");
   LACERTA_ASSIGN_OR_RETURN(std::optional<ZeroLevelStream> simpler,
                            SimplerIfBetter(mesh, history, meter, target, chosen.measured));
-  if (simpler) return FromZeroLevel(std::move(*simpler), report, "a simplified mesh in stock Draco form is smaller");
-  return FromRefinement(meter, chosen, report);
+  const std::string reason = simpler ? ReasonForSimpler(*simpler, target) : ReasonForMiss(chosen.measured, target);
+  if (simpler) return FromZeroLevel(std::move(*simpler), report, reason);
+  return FromRefinement(meter, chosen, report, reason);
 }
 
 }  // namespace
@@ -99,7 +124,8 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
 StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions& options) {
   LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(input));
   const TriangleMesh& mesh = cleaned.mesh;
-  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget target, ResolveTarget(options.target, mesh.positions.size()));
+  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget asked, ResolveTarget(options.target, mesh.positions.size()));
+  const ResolvedTarget target = LessForm(asked, options.form);
   LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(mesh));
   EncodeReport report;
   report.clean = cleaned.report;
@@ -110,7 +136,8 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   StatusOr<EncodedMesh> encoded = EncodeSurface(mesh, meter, target, options, report);
   if (!encoded.ok()) {  // the mesh as it is, then, with the reason
     LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, CodeZeroLevel(mesh, meter, target));
-    encoded = FromZeroLevel(std::move(zero), report, encoded.status().message());
+    const char* const miss = zero.meets_target ? "" : "; the target is out of reach, this is the nearest";
+    encoded = FromZeroLevel(std::move(zero), report, encoded.status().message() + miss);
   }
   if (options.progress) options.progress(1.0, "done");
   return InForm(options.form, std::move(encoded).value());

@@ -46,18 +46,18 @@ StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const InputSurface& su
   return NormalMeshCandidate(std::move(base), Pierce(surface, domain, BaseOf(domain, input).positions, options));
 }
 
-StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(double lambda, EncodeMode mode) const {
+StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(double lambda, double descent_lambda, EncodeMode mode) const {
   if (mode == EncodeMode::kPaper) return CodeByModel(normal_mesh_.mesh, lambda);
   const std::vector<Vec3f> base(target_.points.begin(), target_.points.begin() + num_base_vertices());
   const BaseMesh lattice =
       RoundToLattice({base, normal_mesh_.mesh.base_triangles}, static_cast<float>(BaseStepForSlope(lambda)));
   DescentOptions options;
-  options.lambda = lambda;
+  options.lambda = descent_lambda;
   return Descend(target_, QuantizeClosedLoop(target_, lattice, StepsForSlope(target_, detail_scales_, lambda)), options);
 }
 
-StatusOr<CodedStream> NormalMeshCandidate::Code(double lambda, EncodeMode mode) const {
-  LACERTA_ASSIGN_OR_RETURN(const CodedSurface coded, CodeSurface(lambda, mode));
+StatusOr<CodedStream> NormalMeshCandidate::Code(double lambda, double descent_lambda, EncodeMode mode) const {
+  LACERTA_ASSIGN_OR_RETURN(const CodedSurface coded, CodeSurface(lambda, descent_lambda, mode));
   CodedStream stream;
   LACERTA_ASSIGN_OR_RETURN(stream.base, RecodeBaseMesh(base_, coded.base));
   const Span<const Topology> topologies = Span<const Topology>(target_.topologies.data(), coded.levels.size());

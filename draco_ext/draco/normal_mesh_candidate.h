@@ -37,7 +37,10 @@ class NormalMeshCandidate {
                                               uint32_t num_base_vertices, int num_levels);
 
   // Codes at a slope of the rate-distortion curve: lambda in squared model units per bit, > 0. A larger one gives fewer bytes.
-  StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const;
+  StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const { return Code(lambda, lambda, mode); }
+  // The same with the steps of one slope and the choice of coefficients of another, which paper mode ignores. Where a level
+  // falls silent the steps jump, and bytes and quality with them; a larger descent_lambda reaches what lies between.
+  StatusOr<CodedStream> Code(double lambda, double descent_lambda, EncodeMode mode) const;
 
   uint32_t num_base_vertices() const { return normal_mesh_.mesh.num_base_vertices; }
   const NormalMesh& normal_mesh() const { return normal_mesh_; }
@@ -46,7 +49,7 @@ class NormalMeshCandidate {
 
  private:
   NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);
-  StatusOr<CodedSurface> CodeSurface(double lambda, EncodeMode mode) const;
+  StatusOr<CodedSurface> CodeSurface(double lambda, double descent_lambda, EncodeMode mode) const;
 
   CodedBase base_;  // at a nominal step: fixes the order
   NormalMesh normal_mesh_;

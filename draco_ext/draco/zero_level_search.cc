@@ -10,7 +10,8 @@
 namespace lacerta {
 namespace {
 
-constexpr int kFewestBits = 4, kMostBits = 24;
+// More bits than that and neighbouring points of the grid may be one and the same float.
+constexpr int kFewestBits = 4, kMostBits = 20;
 
 StatusOr<ZeroLevelStream> CodeWithBits(const TriangleMesh& mesh, int bits, const SurfaceDistanceMeter& meter,
                                        const ResolvedTarget& target) {

@@ -1,0 +1,113 @@
+"""What the tables of this folder share: running the command, reading peers' figures, writing a table twice (.md and .csv)."""
+
+import argparse
+import csv
+import json
+import math
+import os
+import resource
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parents[2]
+EXIT_OK, EXIT_TARGET_MISSED = 0, 5
+
+
+def parse_arguments(description, meshes):
+    """Arguments that every table takes; `meshes` are measured where none is named."""
+    shared = Path(os.environ.get("LACERTA_SHARED_DIR", PROJECT.parent / "shared"))
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("meshes", nargs="*", default=meshes, help="names of meshes; default: " + " ".join(meshes))
+    parser.add_argument("--data", type=Path, default=shared / "data", help="folder of NAME.ply")
+    parser.add_argument("--peers", type=Path, default=shared / "peers", help="folder of NAME.csv and vdmc/NAME.csv")
+    parser.add_argument("--command", type=Path, default=PROJECT / "build/release/bin/lacerta", help="the lacerta command")
+    parser.add_argument("--out", type=Path, default=PROJECT / "docs/results", help="folder of the tables")
+    arguments = parser.parse_args()
+    missing = [str(p) for p in [arguments.command] + [arguments.data / f"{m}.ply" for m in arguments.meshes] if not p.exists()]
+    if missing:
+        parser.error("not found: " + ", ".join(missing))
+    return arguments
+
+
+def run(command):
+    """Runs a command that prints JSON. Returns what it printed, seconds of wall clock and of all its threads."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    start = time.monotonic()
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+    seconds = time.monotonic() - start
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode not in (EXIT_OK, EXIT_TARGET_MISSED):
+        raise SystemExit(f"{' '.join(map(str, command))}: exit {done.returncode}: {done.stderr.strip()}")
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return json.loads(done.stdout), seconds, cpu
+
+
+def pack_and_check(lacerta, mesh, *options):
+    """Packs a mesh file as a stream, unpacks the file again and measures that against the mesh. The measuring takes other
+    samples than the encoder took, so that it checks its report."""
+    with tempfile.TemporaryDirectory() as folder:
+        stream, back = Path(folder) / "stream.drc", Path(folder) / "back.ply"
+        report, pack_s, pack_cpu_s = run([lacerta, "pack", mesh, "-o", stream, "--json", *options])
+        _, unpack_s, _ = run([lacerta, "unpack", stream, "-o", back, "--json"])
+        check, _, _ = run([lacerta, "compare", mesh, back, "--samples", 300_000, "--json"])
+        size = stream.stat().st_size
+    encode = report["encode"]
+    finest = encode["levels"][-1]
+    assert size == report["bytes"] == finest["bytes"], "the report is wrong about the bytes"
+    return {
+        "bytes": size,
+        "bpv": 8 * size / encode["inputVertices"],
+        "psnr": check["psnr"],
+        "psnr_reported": finest["psnr"],
+        "levels": encode["levels"],
+        "vertices": finest["vertices"],
+        "triangles": finest["triangles"],
+        "normal_share": encode["normalShare"],
+        "remesh_psnr": encode["remeshPsnr"],
+        "target_met": report["targetMet"],
+        "reason": encode["reason"],
+        "pack_s": pack_s,
+        "pack_cpu_s": pack_cpu_s,
+        "unpack_s": unpack_s,
+    }
+
+
+def fewest_bytes(peer_csv, peer, psnr):
+    """Bytes of the smallest row of a peer that reaches the PSNR, or None."""
+    if not peer_csv.exists():
+        return None
+    with open(peer_csv, newline="") as file:
+        sizes = [int(row["bytes"]) for row in csv.DictReader(file) if row["peer"] == peer and float(row["psnr"]) >= psnr]
+    return min(sizes, default=None)
+
+
+def geometric_mean(values):
+    values = [v for v in values if v]
+    return math.exp(sum(map(math.log, values)) / len(values)) if values else None
+
+
+def shown(value, digits=2):
+    if value is None:
+        return "–"
+    return f"{value:.{digits}f}" if isinstance(value, float) else str(value)
+
+
+def markdown_table(header, rows):
+    lines = [header, ["---"] * len(header)] + rows
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
+
+
+def write_csv(path, rows):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        for row in rows:
+            writer.writerow({k: round(v, 5) if isinstance(v, float) else v for k, v in row.items()})
+
+
+def write_markdown(path, *paragraphs):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(paragraphs))

@@ -1,0 +1,87 @@
+// One base size made to meet a target.
+#include "draco/candidate_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "remesh/decimate.h"
+#include "shapes/shapes.h"
+
+namespace lacerta {
+namespace {
+
+// A bumpy sphere remeshed over 60 vertices.
+class CandidateSearchTest : public ::testing::Test {
+ protected:
+  CandidateSearchTest()
+      : mesh_(shapes::BumpySphere(4, 0.2f)),
+        surface_(mesh_),
+        history_(Decimate(mesh_, DecimateOptions())),
+        meter_(SurfaceDistanceMeter::Create(mesh_).value()),
+        candidate_(NormalMeshCandidate::Create(surface_, history_, 60, 3).value()),
+        remesh_psnr_(PsnrOf(candidate_.RemeshedSurface())) {}
+
+  double PsnrOf(const TriangleMesh& mesh) const { return Psnr(meter_.Measure(mesh).value().Rms(), meter_.diagonal()); }
+  CandidateSearch Search(const ResolvedTarget& target) const {
+    return CandidateSearch(candidate_, remesh_psnr_, meter_, target, EncodeMode::kDefault);
+  }
+
+  TriangleMesh mesh_;
+  InputSurface surface_;
+  CollapseHistory history_;
+  SurfaceDistanceMeter meter_;
+  NormalMeshCandidate candidate_;
+  double remesh_psnr_;
+};
+
+TEST_F(CandidateSearchTest, MeetsPsnrFromBothSides) {
+  for (const double psnr : {50.0, 55.0, 60.0}) {
+    ASSERT_GT(remesh_psnr_, psnr + 1);
+    CandidateSearch search = Search({false, 0, psnr});
+    const MeasuredStream stream = search.Meet().value();
+    EXPECT_TRUE(stream.meets_target);
+    EXPECT_GE(stream.psnr, psnr);
+    EXPECT_LT(stream.psnr, psnr + 0.3);
+    EXPECT_DOUBLE_EQ(stream.psnr, PsnrOf(stream.stream.FinestMesh()));
+  }
+}
+
+TEST_F(CandidateSearchTest, MeetsBytesFromBothSides) {
+  for (const double bytes : {500.0, 900.0, 2000.0}) {
+    CandidateSearch search = Search({true, bytes, 0});
+    const MeasuredStream stream = search.Meet().value();
+    EXPECT_TRUE(stream.meets_target);
+    EXPECT_LE(static_cast<double>(stream.stream.size()), bytes);
+    EXPECT_GE(static_cast<double>(stream.stream.size()), 0.98 * bytes);
+  }
+}
+
+TEST_F(CandidateSearchTest, ScoreForesees) {
+  CandidateSearch by_psnr = Search({false, 0, 58});
+  const double log_bytes = by_psnr.Score().value();
+  EXPECT_NEAR(log_bytes, std::log(static_cast<double>(by_psnr.Meet().value().stream.size())), 0.15);
+  CandidateSearch by_bytes = Search({true, 900, 0});
+  const double minus_psnr = by_bytes.Score().value();
+  EXPECT_NEAR(-minus_psnr, PsnrOf(by_bytes.Meet().value().stream.FinestMesh()), 1.5);
+}
+
+TEST_F(CandidateSearchTest, SaysWhereTheRemeshIsTheLimit) {
+  CandidateSearch search = Search({false, 0, remesh_psnr_ + 5});
+  const MeasuredStream stream = search.Meet().value();
+  EXPECT_FALSE(stream.meets_target);
+  EXPECT_LT(stream.psnr, remesh_psnr_ + 5);
+  EXPECT_GT(stream.psnr, remesh_psnr_ - 3);
+}
+
+TEST_F(CandidateSearchTest, SaysWhereTheBaseAloneIsOverTheBytes) {
+  CandidateSearch search = Search({true, 100, 0});
+  const MeasuredStream stream = search.Meet().value();
+  EXPECT_FALSE(stream.meets_target);
+  EXPECT_GT(stream.stream.size(), 100u);
+  EXPECT_LT(stream.stream.size(), 400u);
+}
+
+}  // namespace
+}  // namespace lacerta

@@ -1,0 +1,245 @@
+// The encode page: what goes in, what is promised of what comes out.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "draco/mesh_conversion.h"
+#include "lacerta/codec.h"
+#include "lacerta/draco.h"
+#include "lacerta/surface_distance.h"
+#include "shapes/shapes.h"
+
+namespace lacerta {
+namespace {
+
+using ::testing::HasSubstr;
+using Kind = EncodeTarget::Kind;
+
+TriangleMesh Scan() { return shapes::BumpySphere(4, 0.2f, 0.002f); }
+TriangleMesh Ring() { return shapes::Torus(64, 32); }
+
+EncodeOptions OptionsFor(Kind kind, double value, StreamForm form = StreamForm::kDraco) {
+  EncodeOptions options;
+  options.target = {kind, value};
+  options.form = form;
+  return options;
+}
+
+EncodedMesh EncodeOrDie(const TriangleMesh& mesh, const EncodeOptions& options) {
+  StatusOr<EncodedMesh> encoded = EncodeMesh(mesh, options);
+  EXPECT_TRUE(encoded.ok()) << encoded.status().message();
+  return encoded.ok() ? std::move(encoded.value()) : EncodedMesh();
+}
+
+// Measured from the stream alone.
+double DecodedPsnr(const TriangleMesh& original, const Bytes& stream, int level) {
+  DecodeOptions options;
+  options.max_level = level;
+  const SurfaceDistance distance = MeasureSurfaceDistance(original, DecodeMesh(stream, options).value().mesh).value();
+  return Psnr(distance.Rms(), BoundingBoxDiagonal(original));
+}
+
+TEST(EncodeMeshTest, KeepsPsnrTargetsFromBothSides) {
+  for (const TriangleMesh& mesh : {Scan(), Ring()}) {
+    for (const double target : {54.0}) {
+      const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kPsnr, target));
+      ASSERT_TRUE(encoded.report.progressive) << encoded.report.reason;
+      const int finest = static_cast<int>(encoded.report.levels.size()) - 1;
+      const double psnr = DecodedPsnr(mesh, encoded.stream, finest);
+      EXPECT_GE(psnr, target);
+      EXPECT_LT(psnr, target + 0.3);
+      EXPECT_EQ(encoded.report.reason, "");
+    }
+  }
+}
+
+TEST(EncodeMeshTest, KeepsRateTargetsFromBothSides) {
+  const TriangleMesh mesh = Scan();
+  const auto num_vertices = static_cast<double>(mesh.positions.size());
+  for (const double bits_per_vertex : {2.0}) {
+    const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kBitsPerVertex, bits_per_vertex));
+    ASSERT_TRUE(encoded.report.progressive) << encoded.report.reason;
+    const double rate = 8 * static_cast<double>(encoded.stream.size()) / num_vertices;
+    EXPECT_LE(rate, bits_per_vertex);
+    EXPECT_GE(rate, 0.98 * bits_per_vertex);
+  }
+}
+
+TEST(EncodeMeshTest, CustomFormKeepsRateTargetsToo) {
+  const EncodedMesh encoded = EncodeOrDie(Scan(), OptionsFor(Kind::kBytes, 800, StreamForm::kCustom));
+  ASSERT_TRUE(encoded.report.progressive) << encoded.report.reason;
+  EXPECT_LE(encoded.stream.size(), 800u);
+  EXPECT_GE(encoded.stream.size(), 784u);
+  EXPECT_EQ(encoded.report.levels.back().bytes, encoded.stream.size());
+}
+
+TEST(EncodeMeshTest, ErrorTargetIsThePsnrTargetInAnotherUnit) {
+  const EncodedMesh error = EncodeOrDie(Scan(), OptionsFor(Kind::kError, 3.1622776601683794e-3));
+  const EncodedMesh psnr = EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 50));
+  EXPECT_LE(error.report.levels.back().error, 3.1622776601683795e-3 * error.report.diagonal);
+  EXPECT_NEAR(error.report.levels.back().psnr, psnr.report.levels.back().psnr, 0.3);
+}
+
+TEST(EncodeMeshTest, ReportsWhatTheStreamHolds) {
+  const TriangleMesh mesh = Scan();
+  const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kPsnr, 50));
+  const EncodeReport& report = encoded.report;
+  EXPECT_EQ(report.input_vertices, mesh.positions.size());
+  EXPECT_EQ(report.input_triangles, mesh.triangles.size());
+  ASSERT_EQ(report.levels.size(), encoded.part_sizes.size());
+  EXPECT_EQ(std::accumulate(encoded.part_sizes.begin(), encoded.part_sizes.end(), size_t{0}), encoded.stream.size());
+  for (size_t level = 0; level < report.levels.size(); ++level) {
+    DecodeOptions options;
+    options.max_level = static_cast<int>(level);
+    const DecodedMesh decoded = DecodeMesh(encoded.stream, options).value();
+    EXPECT_EQ(decoded.mesh.positions.size(), report.levels[level].vertices);
+    EXPECT_EQ(decoded.mesh.triangles.size(), report.levels[level].triangles);
+    EXPECT_NEAR(DecodedPsnr(mesh, encoded.stream, static_cast<int>(level)), report.levels[level].psnr, 1e-3);
+  }
+  EXPECT_GT(report.remesh_psnr, report.levels.back().psnr);
+  EXPECT_GT(report.normal_share, 0.5);
+  EXPECT_LE(report.normal_share, 1.0);
+}
+
+TEST(EncodeMeshTest, EveryPrefixDecodesToItsLastCompleteLevel) {
+  for (const StreamForm form : {StreamForm::kDraco, StreamForm::kCustom}) {
+    const EncodedMesh encoded = EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 44, form));
+    ASSERT_GE(encoded.part_sizes.size(), 3u);
+    size_t complete = encoded.part_sizes[0];
+    int level = 0;
+    for (size_t length = 0; length <= encoded.stream.size(); ++length) {
+      const Bytes prefix(encoded.stream.begin(), encoded.stream.begin() + static_cast<std::ptrdiff_t>(length));
+      const StatusOr<DecodedMesh> decoded = DecodeMesh(prefix, DecodeOptions());
+      if (length < encoded.part_sizes[0]) {
+        EXPECT_FALSE(decoded.ok()) << "prefix of " << length << " bytes, base of " << encoded.part_sizes[0];
+        continue;
+      }
+      while (static_cast<size_t>(level) + 1 < encoded.part_sizes.size() &&
+             complete + encoded.part_sizes[static_cast<size_t>(level) + 1] <= length) {
+        complete += encoded.part_sizes[static_cast<size_t>(++level)];
+      }
+      ASSERT_TRUE(decoded.ok()) << "prefix of " << length << " bytes: " << decoded.status().message();
+      EXPECT_EQ(decoded.value().level, level) << "prefix of " << length << " bytes";
+      // A cut within a segment is reported; a stream that ends with its base is a stock stream, whole as it is.
+      const bool whole = length == encoded.part_sizes[0] || length == encoded.stream.size();
+      EXPECT_EQ(decoded.value().refinement.ok(), whole) << decoded.value().refinement.message();
+    }
+    EXPECT_EQ(level, static_cast<int>(encoded.part_sizes.size()) - 1);
+  }
+}
+
+TEST(EncodeMeshTest, SameBytesOnOneThreadAndOnTwo) {
+  const EncodeOptions options = OptionsFor(Kind::kPsnr, 50);
+  std::vector<Bytes> streams;
+  for (const size_t threads : {1, 2}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    streams.push_back(EncodeOrDie(Scan(), options).stream);
+  }
+  EXPECT_EQ(streams[0], streams[1]);
+}
+
+TEST(EncodeMeshTest, WhatCannotBeRemeshedIsAStockStreamWithTheReason) {
+  const std::vector<std::pair<TriangleMesh, std::string>> cases = {
+      {shapes::GridWithBorder(20, 20, 0.3f), "border"},
+      {shapes::PuncturedSphere(3), "border"},
+      {shapes::Misoriented(3), "not an oriented manifold"},
+      {shapes::Pinched(), "too few triangles"},
+      {shapes::NonManifoldEdge(), "too few triangles"},
+      {shapes::Icosphere(0), "too few triangles"},
+      {{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}}}, "too few triangles"}};
+  for (const auto& [mesh, reason] : cases) {
+    const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kPsnr, 70));
+    EXPECT_FALSE(encoded.report.progressive);
+    EXPECT_THAT(encoded.report.reason, HasSubstr(reason));
+    ASSERT_EQ(encoded.report.levels.size(), 1u);
+    EXPECT_GE(encoded.report.levels[0].psnr, 70.0);
+    const DecodedMesh decoded = DecodeMesh(encoded.stream, DecodeOptions()).value();
+    EXPECT_EQ(decoded.num_levels, 0);
+    EXPECT_EQ(decoded.mesh.triangles.size(), encoded.report.input_triangles);
+    EXPECT_GE(DecodedPsnr(mesh, encoded.stream, 0), 70.0);
+  }
+}
+
+TEST(EncodeMeshTest, CleansBeforeItRemeshes) {
+  const EncodedMesh soup = EncodeOrDie(shapes::TriangleSoup(3), OptionsFor(Kind::kPsnr, 50));
+  EXPECT_GT(soup.report.clean.welded_vertices, 0u);
+  EXPECT_EQ(soup.report.input_vertices, shapes::Icosphere(3).positions.size());
+}
+
+TEST(EncodeMeshTest, RefusesDamagedMeshesByName) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  for (const float bad : {nan, infinity, -infinity}) {
+    TriangleMesh mesh = shapes::Icosphere(3);
+    mesh.positions[7].y = bad;
+    const StatusOr<EncodedMesh> encoded = EncodeMesh(mesh, EncodeOptions());
+    ASSERT_FALSE(encoded.ok());
+    EXPECT_EQ(encoded.status().code(), StatusCode::kInvalidData);
+    EXPECT_THAT(encoded.status().message(), HasSubstr("7"));
+  }
+  TriangleMesh out_of_range = shapes::Icosphere(3);
+  out_of_range.triangles[5][1] = 1'000'000;
+  EXPECT_EQ(EncodeMesh(out_of_range, EncodeOptions()).status().code(), StatusCode::kInvalidData);
+  EXPECT_EQ(EncodeMesh(TriangleMesh(), EncodeOptions()).status().code(), StatusCode::kInvalidData);
+  const TriangleMesh one_point = {{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{{0, 1, 2}}}};
+  EXPECT_EQ(EncodeMesh(one_point, EncodeOptions()).status().code(), StatusCode::kInvalidData);
+}
+
+TEST(EncodeMeshTest, RefusesTargetsThatMakeNoSense) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Kind kind : {Kind::kBytes, Kind::kBitsPerVertex, Kind::kPsnr, Kind::kError}) {
+    for (const double value : {nan, -1.0, 0.0, 1e300}) {
+      EXPECT_EQ(EncodeMesh(shapes::Icosphere(2), OptionsFor(kind, value)).status().code(), StatusCode::kInvalidArgument)
+          << static_cast<int>(kind) << " " << value;
+    }
+  }
+}
+
+TEST(EncodeMeshTest, AnUnreachableTargetIsReportedAsSuch) {
+  const EncodedMesh encoded = EncodeOrDie(Scan(), OptionsFor(Kind::kBytes, 100));
+  EXPECT_GT(encoded.stream.size(), 100u);
+  EXPECT_THAT(encoded.report.reason, HasSubstr("out of reach"));
+  EXPECT_TRUE(DecodeMesh(encoded.stream, DecodeOptions()).ok());
+}
+
+TEST(EncodeMeshTest, PaperModeKeepsItsTargetToo) {
+  EncodeOptions options = OptionsFor(Kind::kPsnr, 50);
+  options.mode = EncodeMode::kPaper;
+  const EncodedMesh encoded = EncodeOrDie(Scan(), options);
+  EXPECT_GE(encoded.report.levels.back().psnr, 50.0);
+  EXPECT_GE(encoded.stream.size(), EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 50)).stream.size());
+}
+
+TEST(EncodeMeshTest, TheDracoPairAgreesInBothForms) {
+  const TriangleMesh mesh = Scan();
+  for (const StreamForm form : {StreamForm::kDraco, StreamForm::kCustom}) {
+    const EncodeOptions options = OptionsFor(Kind::kPsnr, 50, form);
+    const EncodedMesh expected = EncodeOrDie(mesh, options);
+    Encoder encoder(options);
+    draco::EncoderBuffer buffer;
+    const std::unique_ptr<draco::Mesh> draco_mesh = ToDracoMesh(mesh);
+    const draco::Status status = encoder.EncodeMeshToBuffer(*draco_mesh, &buffer);
+    ASSERT_TRUE(status.ok()) << status.error_msg();
+    EXPECT_EQ(Bytes(buffer.data(), buffer.data() + buffer.size()), expected.stream);
+    EXPECT_EQ(encoder.report().levels.size(), expected.report.levels.size());
+
+    draco::DecoderBuffer in;
+    in.Init(buffer.data(), buffer.size());
+    Decoder decoder;
+    const auto decoded = decoder.DecodeMeshFromBuffer(&in);
+    ASSERT_TRUE(decoded.ok()) << decoded.status().error_msg();
+    EXPECT_EQ(decoder.level(), static_cast<int>(expected.report.levels.size()) - 1);
+    EXPECT_EQ(decoded.value()->num_faces(), expected.report.levels.back().triangles);
+  }
+}
+
+}  // namespace
+}  // namespace lacerta

@@ -1,0 +1,93 @@
+// Targets and the choice of a base size.
+#include "draco/rate_control.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "remesh/decimate.h"
+#include "shapes/shapes.h"
+
+namespace lacerta {
+namespace {
+
+using ::testing::HasSubstr;
+using Kind = EncodeTarget::Kind;
+
+TEST(ResolveTargetTest, BringsUnitsTogether) {
+  const ResolvedTarget bytes = ResolveTarget({Kind::kBytes, 1234}, 10).value();
+  EXPECT_TRUE(bytes.is_rate);
+  EXPECT_EQ(bytes.bytes, 1234);
+  const ResolvedTarget rate = ResolveTarget({Kind::kBitsPerVertex, 0.5}, 48485).value();
+  EXPECT_TRUE(rate.is_rate);
+  EXPECT_DOUBLE_EQ(rate.bytes, 0.5 * 48485 / 8);
+  const ResolvedTarget psnr = ResolveTarget({Kind::kPsnr, 70}, 10).value();
+  EXPECT_FALSE(psnr.is_rate);
+  EXPECT_EQ(psnr.psnr, 70);
+  const ResolvedTarget error = ResolveTarget({Kind::kError, 1e-4}, 10).value();
+  EXPECT_FALSE(error.is_rate);
+  EXPECT_NEAR(error.psnr, 80, 1e-12);
+}
+
+TEST(ResolveTargetTest, NamesTheValueThatMakesNoSense) {
+  const Status status = ResolveTarget({Kind::kPsnr, 500}, 10).status();
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(status.message(), HasSubstr("500"));
+  EXPECT_THAT(status.message(), HasSubstr("dB"));
+  for (const Kind kind : {Kind::kBytes, Kind::kBitsPerVertex, Kind::kPsnr, Kind::kError}) {
+    EXPECT_FALSE(ResolveTarget({kind, std::numeric_limits<double>::quiet_NaN()}, 10).ok());
+    EXPECT_FALSE(ResolveTarget({kind, std::numeric_limits<double>::infinity()}, 10).ok());
+  }
+}
+
+// Codes a mesh at a target; keeps what the search needs.
+struct Coder {
+  explicit Coder(const TriangleMesh& m)
+      : mesh(m), surface(mesh), history(Decimate(mesh, DecimateOptions())), meter(SurfaceDistanceMeter::Create(mesh).value()) {}
+  ChosenStream Code(const ResolvedTarget& target) const {
+    return CodeAtTarget(surface, history, meter, target, EncodeMode::kDefault, {}).value();
+  }
+
+  TriangleMesh mesh;
+  InputSurface surface;
+  CollapseHistory history;
+  SurfaceDistanceMeter meter;
+};
+
+TEST(CodeAtTargetTest, BasesGrowWithTheQualityAskedFor) {
+  const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
+  const ChosenStream coarse = coder.Code({false, 0, 40}), fine = coder.Code({false, 0, 56});
+  EXPECT_TRUE(coarse.measured.meets_target);
+  EXPECT_TRUE(fine.measured.meets_target);
+  EXPECT_LE(coarse.measured.stream.decoded.num_base_vertices, fine.measured.stream.decoded.num_base_vertices);
+  EXPECT_GE(4 * fine.measured.stream.size(), 5 * coarse.measured.stream.size());
+}
+
+TEST(CodeAtTargetTest, ReportsStages) {
+  const Coder coder(shapes::BumpySphere(3, 0.2f));
+  std::vector<double> shares;
+  const auto progress = [&](double share, const char* stage) {
+    EXPECT_STRNE(stage, "");
+    shares.push_back(share);
+  };
+  ASSERT_TRUE(CodeAtTarget(coder.surface, coder.history, coder.meter, {false, 0, 50}, EncodeMode::kDefault, progress).ok());
+  ASSERT_GE(shares.size(), 2u);
+  for (size_t i = 0; i < shares.size(); ++i) {
+    EXPECT_GE(shares[i], i == 0 ? 0.0 : shares[i - 1]);
+    EXPECT_LE(shares[i], 1.0);
+  }
+}
+
+TEST(CodeAtTargetTest, BeyondTheRemeshTheNearestIsReturned) {
+  const Coder coder(shapes::CreasedBox(8));  // creases that a smooth remesh rounds
+  const ChosenStream chosen = coder.Code({false, 0, 120});
+  EXPECT_FALSE(chosen.measured.meets_target);
+  EXPECT_LT(chosen.measured.psnr, 120);
+  EXPECT_GT(chosen.measured.psnr, 30);
+}
+
+}  // namespace
+}  // namespace lacerta
