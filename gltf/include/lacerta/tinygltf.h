@@ -1,4 +1,4 @@
-// Progressive meshes for hosts that load glTF with tinygltf (2.5 or later): a loaded model in, a refined model out.
+// Progressive meshes for hosts that load glTF with tinygltf (tested: 2.7.0): a loaded model in, a refined model out.
 //   tinygltf::TinyGLTF loader;
 //   loader.LoadBinaryFromFile(&model, &error, &warning, "model.glb");
 //   const lacerta::StatusOr<lacerta::RefineResult> refined = lacerta::RefineModel(&model, {});
