@@ -120,7 +120,7 @@ StatusOr<double> CandidateSearch::Score() {
 StatusOr<MeasuredStream> CandidateSearch::Meet() {
   const double low = target_.is_rate ? Goal() - kBytesSlack : Goal() + kPsnrMargin;
   const double high = target_.is_rate ? Goal() : Goal() + kPsnrSlack;
-  const auto keeps_promise = [&](const Attempt& a) { return target_.is_rate ? a.value <= high : a.value >= target_.psnr; };
+  const auto keeps_promise = [&](const Attempt& a) { return target_.is_rate ? a.value <= high : a.value >= low; };
   std::optional<Attempt> best;
   for (int i = 0; i < kMeetTries && !CannotReach(); ++i) {
     LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(NextGuess(), target_.is_rate ? Distortion::kEstimated : Distortion::kMeasured));
@@ -131,7 +131,7 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
     KeepStepsAtJump();
   }
   MeasuredStream result;
-  result.meets_target = keeps_promise(*best);
+  result.meets_target = keeps_promise(*best) || (!target_.is_rate && best->value >= target_.psnr);
   result.psnr = best->psnr;
   result.stream = std::move(best->stream);
   return result;
