@@ -33,6 +33,11 @@ CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double re
   start_ = std::log(kFirstLambda * distance * distance);
 }
 
+double CandidateSearch::Aim() const {
+  constexpr double kPsnrAim = 0.08, kBytesAim = 0.006;  // well inside of what counts as met
+  return target_.is_rate ? Goal() - kBytesAim : Goal() + kPsnrAim;
+}
+
 double CandidateSearch::Goal() const { return target_.is_rate ? std::log(target_.bytes) : target_.psnr; }
 
 double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogBytesPerLogLambda : kPsnrPerLogLambda; }
@@ -53,30 +58,29 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, Disto
   return attempt;
 }
 
-CandidateSearch::Bracket CandidateSearch::AroundGoal() const {
-  Bracket bracket{values_.end(), values_.end()};
+CandidateSearch::Bracket CandidateSearch::AroundAim() const {
+  Bracket bracket{values_.end(), values_.begin()};
   for (auto it = values_.begin(); it != values_.end(); ++it) {
-    if (it->second >= Goal()) bracket.above = it;
-    if (it->second < Goal() && bracket.below == values_.end()) bracket.below = it;
+    if (it->second >= Aim()) bracket = {it, std::next(it)};  // values need not fall evenly: the last that is high enough
   }
   return bracket;
 }
 
 bool CandidateSearch::IsBracket(const Bracket& b) const {
-  return b.above != values_.end() && b.below != values_.end() && b.below->first > b.above->first;
+  return b.above != values_.end() && b.below != values_.end();
 }
 
 // The next ln(lambda) to try: between the two attempts around the goal, or beyond the nearest one.
 double CandidateSearch::NextGuess() const {
   if (values_.empty()) return start_;
-  const auto [above, below] = AroundGoal();
+  const auto [above, below] = AroundAim();
   if (IsBracket({above, below})) {
     const double width = below->first - above->first;
-    const double share = (above->second - Goal()) / (above->second - below->second);
+    const double share = (above->second - Aim()) / (above->second - below->second);
     return above->first + width * std::clamp(share, 0.08, 0.92);
   }
   const auto nearest = above != values_.end() ? above : below;
-  const double step = (Goal() - nearest->second) / TypicalSlope();
+  const double step = (Aim() - nearest->second) / TypicalSlope();
   // Beyond all attempts: somewhat farther than it seems, so that the goal gets bracketed.
   return nearest->first + std::clamp(1.1 * step, -4.0, 4.0) + (step < 0 ? -0.02 : 0.02);
 }
@@ -86,7 +90,7 @@ double CandidateSearch::NextGuess() const {
 void CandidateSearch::KeepStepsAtJump() {
   constexpr double kHardlyApart = 0.06;
   if (kept_steps_ || mode_ == EncodeMode::kPaper) return;
-  const Bracket bracket = AroundGoal();
+  const Bracket bracket = AroundAim();
   if (!IsBracket(bracket) || bracket.below->first - bracket.above->first > kHardlyApart) return;
   const std::pair<double, double> finer = *bracket.above;
   kept_steps_ = finer.first;
