@@ -33,11 +33,6 @@ CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double re
   start_ = std::log(kFirstLambda * distance * distance);
 }
 
-double CandidateSearch::Aim() const {
-  constexpr double kPsnrAim = 0.08, kBytesAim = 0.006;  // well inside of what counts as met
-  return target_.is_rate ? Goal() - kBytesAim : Goal() + kPsnrAim;
-}
-
 double CandidateSearch::Goal() const { return target_.is_rate ? std::log(target_.bytes) : target_.psnr; }
 
 double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogBytesPerLogLambda : kPsnrPerLogLambda; }
@@ -58,29 +53,30 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, Disto
   return attempt;
 }
 
-CandidateSearch::Bracket CandidateSearch::AroundAim() const {
-  Bracket bracket{values_.end(), values_.begin()};
+CandidateSearch::Bracket CandidateSearch::AroundGoal() const {
+  Bracket bracket{values_.end(), values_.end()};
   for (auto it = values_.begin(); it != values_.end(); ++it) {
-    if (it->second >= Aim()) bracket = {it, std::next(it)};  // values need not fall evenly: the last that is high enough
+    if (it->second >= Goal()) bracket.above = it;
+    if (it->second < Goal() && bracket.below == values_.end()) bracket.below = it;
   }
   return bracket;
 }
 
 bool CandidateSearch::IsBracket(const Bracket& b) const {
-  return b.above != values_.end() && b.below != values_.end();
+  return b.above != values_.end() && b.below != values_.end() && b.below->first > b.above->first;
 }
 
 // The next ln(lambda) to try: between the two attempts around the goal, or beyond the nearest one.
 double CandidateSearch::NextGuess() const {
   if (values_.empty()) return start_;
-  const auto [above, below] = AroundAim();
+  const auto [above, below] = AroundGoal();
   if (IsBracket({above, below})) {
     const double width = below->first - above->first;
-    const double share = (above->second - Aim()) / (above->second - below->second);
+    const double share = (above->second - Goal()) / (above->second - below->second);
     return above->first + width * std::clamp(share, 0.08, 0.92);
   }
   const auto nearest = above != values_.end() ? above : below;
-  const double step = (Aim() - nearest->second) / TypicalSlope();
+  const double step = (Goal() - nearest->second) / TypicalSlope();
   // Beyond all attempts: somewhat farther than it seems, so that the goal gets bracketed.
   return nearest->first + std::clamp(1.1 * step, -4.0, 4.0) + (step < 0 ? -0.02 : 0.02);
 }
@@ -90,7 +86,7 @@ double CandidateSearch::NextGuess() const {
 void CandidateSearch::KeepStepsAtJump() {
   constexpr double kHardlyApart = 0.06;
   if (kept_steps_ || mode_ == EncodeMode::kPaper) return;
-  const Bracket bracket = AroundAim();
+  const Bracket bracket = AroundGoal();
   if (!IsBracket(bracket) || bracket.below->first - bracket.above->first > kHardlyApart) return;
   const std::pair<double, double> finer = *bracket.above;
   kept_steps_ = finer.first;
@@ -124,7 +120,7 @@ StatusOr<double> CandidateSearch::Score() {
 StatusOr<MeasuredStream> CandidateSearch::Meet() {
   const double low = target_.is_rate ? Goal() - kBytesSlack : Goal() + kPsnrMargin;
   const double high = target_.is_rate ? Goal() : Goal() + kPsnrSlack;
-  const auto keeps_promise = [&](const Attempt& a) { return target_.is_rate ? a.value <= high : a.value >= low; };
+  const auto keeps_promise = [&](const Attempt& a) { return target_.is_rate ? a.value <= high : a.value >= target_.psnr; };
   std::optional<Attempt> best;
   for (int i = 0; i < kMeetTries && !CannotReach(); ++i) {
     LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(NextGuess(), target_.is_rate ? Distortion::kEstimated : Distortion::kMeasured));
@@ -135,7 +131,7 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
     KeepStepsAtJump();
   }
   MeasuredStream result;
-  result.meets_target = keeps_promise(*best) || (!target_.is_rate && best->value >= target_.psnr);
+  result.meets_target = keeps_promise(*best);
   result.psnr = best->psnr;
   result.stream = std::move(best->stream);
   return result;

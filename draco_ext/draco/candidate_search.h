@@ -49,15 +49,14 @@ class CandidateSearch {
     double value = 0;  // in the unit of the target: ln(bytes) or dB
   };
   StatusOr<Attempt> Try(double log_lambda, Distortion distortion);
-  double Goal() const;  // in the unit of values_
-  double Aim() const;   // the point in what counts as met that attempts head for
+  double Goal() const;
   double TypicalSlope() const;
   // The attempts next to the goal: the coarsest that is not under it and the finest that is under it; values fall as lambda
   // grows, but for noise. Either may be missing.
   struct Bracket {
     std::map<double, double>::const_iterator above, below;
   };
-  Bracket AroundAim() const;
+  Bracket AroundGoal() const;
   bool IsBracket(const Bracket& bracket) const;
   double NextGuess() const;
   bool CannotReach() const;
