@@ -210,12 +210,14 @@ TEST(EncodeMeshTest, AnUnreachableTargetIsReportedAsSuch) {
   EXPECT_TRUE(DecodeMesh(encoded.stream, DecodeOptions()).ok());
 }
 
-TEST(EncodeMeshTest, PaperModeKeepsItsTargetToo) {
-  EncodeOptions options = OptionsFor(Kind::kPsnr, 50);
+// At 50 dB this scan is a few hundred bytes, and one coefficient more or less decides which mode is ahead.
+TEST(EncodeMeshTest, PaperModeKeepsItsTargetTooAndTakesMoreBytes) {
+  constexpr double kPsnr = 60;
+  EncodeOptions options = OptionsFor(Kind::kPsnr, kPsnr);
   options.mode = EncodeMode::kPaper;
   const EncodedMesh encoded = EncodeOrDie(Scan(), options);
-  EXPECT_GE(encoded.report.levels.back().psnr, 50.0);
-  EXPECT_GE(encoded.stream.size(), EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 50)).stream.size());
+  EXPECT_GE(encoded.report.levels.back().psnr, kPsnr);
+  EXPECT_GT(encoded.stream.size(), EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, kPsnr)).stream.size());
 }
 
 TEST(EncodeMeshTest, TheDracoPairAgreesInBothForms) {
