@@ -19,7 +19,7 @@ std::vector<float> ExtraordinaryStencil(int valence) {
 StencilTable::StencilTable(const Topology& topology) {
   for (uint32_t v = 0; v < topology.num_vertices; ++v) {
     const size_t valence = topology.valence[v];
-    if (topology.on_border[v] || !IsExtraordinary(topology, v)) continue;
+    if (topology.role[v] != CurveRole::kSmooth || !IsExtraordinary(topology, v)) continue;
     if (weights_.size() <= valence) weights_.resize(valence + 1);
     if (weights_[valence].empty()) weights_[valence] = ExtraordinaryStencil(static_cast<int>(valence));
   }
@@ -27,17 +27,17 @@ StencilTable::StencilTable(const Topology& topology) {
 
 namespace butterfly_internal {
 
-uint32_t NextBorderEdge(const Topology& t, uint32_t edge, uint32_t vertex) {
-  // Walk the fan of `vertex` from the border edge `edge` to the border edge on its other side.
+uint32_t NextCurveEdge(const Topology& t, uint32_t edge, uint32_t vertex) {
+  // Walk the fan of `vertex` from the curve edge `edge` to the next one, either way round: a fan with border ends in one.
   uint32_t face = t.edge_faces[edge][0];
   uint32_t spoke = edge;
-  while (face != kNone) {
+  do {
     const auto& tri = t.triangles[face];
     const int corner = tri[0] == vertex ? 0 : tri[1] == vertex ? 1 : 2;
     const uint32_t e1 = t.face_edges[face][(corner + 1) % 3], e2 = t.face_edges[face][(corner + 2) % 3];
     spoke = e1 == spoke ? e2 : e1;
     face = FaceAcross(t, face, spoke);
-  }
+  } while (!t.on_curve[spoke]);
   return spoke;
 }
 

@@ -1,9 +1,10 @@
 // Butterfly prediction of edge midpoints with Zorin's stencils at extraordinary vertices
 // [Dyn, Levin, Gregory 1990], [Zorin, Schroeder, Sweldens 1996].
 //
-// Departures, so that the stencil exists for every edge of a mesh with border:
-//   border edge           the 4-point rule (-1/16, 9/16, 9/16, -1/16) along the border curve alone
-//   an end on the border  the regular 8-point rule, where a face that is missing is replaced by the reflection of its triangle
+// Departures, so that the stencil exists for every edge of a mesh with curves, which are border edges and creases:
+//   curve edge            the 4-point rule (-1/16, 9/16, 9/16, -1/16) along the curve alone; 3/8, 3/4, -1/8 where the first end is a
+//                         corner, 1/2, 1/2 where both are
+//   an end on a curve     the regular 8-point rule, where a face beyond a curve is replaced by the reflection of its triangle
 //   valence 2             3/4, 3/8, -1/8: Zorin's rule for valence 4 with each of its two spokes of no weight left out
 //   valence over 256      counts as regular, so that the work per edge is bounded on hostile connectivity
 #ifndef LACERTA_COMMON_BUTTERFLY_H_
@@ -52,8 +53,8 @@ std::vector<Vec3f> PredictMidpoints(const Topology& topology, const StencilTable
 
 namespace butterfly_internal {
 
-// The border edge at `vertex` other than `edge`, or kNone.
-uint32_t NextBorderEdge(const Topology& t, uint32_t edge, uint32_t vertex);
+// The other curve edge at `vertex`, where `edge` is one and the vertex has the role kCurve.
+uint32_t NextCurveEdge(const Topology& t, uint32_t edge, uint32_t vertex);
 
 template <typename Visitor>
 void VisitRegular(const Topology& t, uint32_t edge, float scale, const Visitor& visit) {
@@ -66,10 +67,9 @@ void VisitRegular(const Topology& t, uint32_t edge, float scale, const Visitor& 
     visit(b, 0.125f * scale);
     for (const int step : {1, 2}) {
       const uint32_t wing = t.face_edges[face][(corner + step) % 3];
-      const uint32_t neighbor = FaceAcross(t, face, wing);
-      if (neighbor != kNone) {
-        visit(OppositeVertex(t, neighbor, wing), -0.0625f * scale);
-      } else {  // reflect the third vertex of `face` across the missing edge
+      if (!t.on_curve[wing]) {
+        visit(OppositeVertex(t, FaceAcross(t, face, wing), wing), -0.0625f * scale);
+      } else {  // reflect the third vertex of `face` across the curve
         const uint32_t far = t.triangles[face][(corner + step) % 3];
         const uint32_t near = far == a0 ? a1 : a0;
         visit(near, -0.0625f * scale);
@@ -99,13 +99,26 @@ void VisitExtraordinary(const Topology& t, const StencilTable& table, uint32_t e
 }
 
 template <typename Visitor>
-void VisitBorder(const Topology& t, uint32_t edge, const Visitor& visit) {
-  for (int end = 0; end < 2; ++end) {
-    const uint32_t v = t.edges[edge][end];
-    const uint32_t next = NextBorderEdge(t, edge, v);
-    const auto& ends = t.edges[next];
-    visit(v, 0.5625f);
-    visit(ends[0] == v ? ends[1] : ends[0], -0.0625f);
+void VisitCurve(const Topology& t, uint32_t edge, const Visitor& visit) {
+  const auto far_end = [&](uint32_t vertex) {
+    const auto& ends = t.edges[NextCurveEdge(t, edge, vertex)];
+    return ends[0] == vertex ? ends[1] : ends[0];
+  };
+  const auto& [a, b] = t.edges[edge];
+  const bool a_continues = t.role[a] == CurveRole::kCurve, b_continues = t.role[b] == CurveRole::kCurve;
+  if (a_continues && b_continues) {
+    visit(a, 0.5625f);
+    visit(far_end(a), -0.0625f);
+    visit(b, 0.5625f);
+    visit(far_end(b), -0.0625f);
+  } else if (a_continues || b_continues) {
+    const uint32_t corner = a_continues ? b : a, other = a_continues ? a : b;
+    visit(corner, 0.375f);
+    visit(other, 0.75f);
+    visit(far_end(other), -0.125f);
+  } else {
+    visit(a, 0.5f);
+    visit(b, 0.5f);
   }
 }
 
@@ -114,9 +127,9 @@ void VisitBorder(const Topology& t, uint32_t edge, const Visitor& visit) {
 template <typename Visitor>
 void VisitStencil(const Topology& t, const StencilTable& table, uint32_t edge, const Visitor& visit) {
   using namespace butterfly_internal;
-  if (t.edge_faces[edge][1] == kNone) return VisitBorder(t, edge, visit);
+  if (t.on_curve[edge]) return VisitCurve(t, edge, visit);
   const auto& [a, b] = t.edges[edge];
-  if (t.on_border[a] || t.on_border[b]) return VisitRegular(t, edge, 1.0f, visit);
+  if (t.role[a] != CurveRole::kSmooth || t.role[b] != CurveRole::kSmooth) return VisitRegular(t, edge, 1.0f, visit);
   const bool a_extraordinary = IsExtraordinary(t, a), b_extraordinary = IsExtraordinary(t, b);
   if (!a_extraordinary && !b_extraordinary) return VisitRegular(t, edge, 1.0f, visit);
   const float scale = a_extraordinary && b_extraordinary ? 0.5f : 1.0f;

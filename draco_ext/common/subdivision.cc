@@ -40,7 +40,7 @@ Status CheckVertexFans(const Topology& t) {
     }
   }
   for (uint32_t v = 0; v < t.num_vertices; ++v) {
-    if (one_face[v] == kNone) return InvalidData("vertex " + std::to_string(v) + " has no face");
+    if (one_face[v] == kNone) continue;
     uint32_t count = 0;
     bool closed = false;
     for (const int direction : {1, 2}) {  // both ways round from the first face, unless the first way closes the ring
@@ -59,12 +59,75 @@ Status CheckVertexFans(const Topology& t) {
   return Status();
 }
 
+StatusOr<std::vector<Triangle>> SplitTriangles(const std::vector<Triangle>& all, const std::vector<uint8_t>& still) {
+  if (still.empty()) return all;
+  if (still.size() != all.size()) return InvalidData("the tags of still triangles are not as many as the triangles");
+  std::vector<Triangle> split;
+  for (size_t f = 0; f < all.size(); ++f) {
+    if (still[f] == 0) split.push_back(all[f]);
+  }
+  return split;
+}
+
+// Sets on_curve and role from the border and the tags.
+Status SetCurves(const BaseTags& tags, Topology* t) {
+  if (!tags.crease.empty() && tags.crease.size() != t->num_edges()) {
+    return InvalidData("the tags of creases are not as many as the edges");
+  }
+  if (!tags.corner.empty() && tags.corner.size() != t->num_vertices) {
+    return InvalidData("the tags of corners are not as many as the vertices");
+  }
+  t->on_curve.assign(t->num_edges(), 0);
+  std::vector<uint32_t> num_curve_edges(t->num_vertices, 0);
+  for (uint32_t e = 0; e < t->num_edges(); ++e) {
+    t->on_curve[e] = t->is_border(e) || (!tags.crease.empty() && tags.crease[e] != 0);
+    for (const uint32_t v : t->edges[e]) num_curve_edges[v] += t->on_curve[e];
+  }
+  t->role.resize(t->num_vertices);
+  for (uint32_t v = 0; v < t->num_vertices; ++v) {
+    const bool bends = !tags.corner.empty() && tags.corner[v] != 0;
+    t->role[v] = num_curve_edges[v] == 0                ? CurveRole::kSmooth
+                 : num_curve_edges[v] == 2 && !bends ? CurveRole::kCurve
+                                                        : CurveRole::kCorner;
+  }
+  return Status();
+}
+
+// Sets the masters of border edges that join the same two positions.
+Status JoinBorders(const std::vector<uint32_t>& joined, Topology* t) {
+  if (joined.empty()) return Status();
+  if (joined.size() != t->num_vertices) return InvalidData("the joined vertices are not as many as the vertices");
+  std::vector<std::pair<uint64_t, uint32_t>> keyed;
+  for (uint32_t e = 0; e < t->num_edges(); ++e) {
+    if (!t->is_border(e)) continue;
+    const uint64_t a = joined[t->edges[e][0]], b = joined[t->edges[e][1]];
+    if (a != b) keyed.emplace_back(std::min(a, b) << 32 | std::max(a, b), e);
+  }
+  std::sort(keyed.begin(), keyed.end());
+  t->master.assign(t->num_edges(), kNone);
+  uint32_t first = 0;
+  for (size_t i = 0; i < keyed.size(); ++i) {
+    if (i > 0 && keyed[i - 1].first == keyed[i].first) {
+      t->master[keyed[i].second] = first;
+    } else {
+      first = keyed[i].second;
+    }
+  }
+  // A copy runs as its master does, so that Refine gives both the same halves.
+  for (const auto& [key, e] : keyed) {
+    const uint32_t m = t->master[e];
+    if (m != kNone && joined[t->edges[e][0]] != joined[t->edges[m][0]]) std::swap(t->edges[e][0], t->edges[e][1]);
+  }
+  return Status();
+}
+
 }  // namespace
 
-StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triangle>& triangles) {
+StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triangle>& all_triangles, const BaseTags& tags) {
   Topology t;
   t.num_vertices = num_vertices;
-  t.triangles = triangles;
+  LACERTA_ASSIGN_OR_RETURN(t.triangles, SplitTriangles(all_triangles, tags.still));
+  const std::vector<Triangle>& triangles = t.triangles;
   t.face_edges.resize(triangles.size());
   for (uint32_t f = 0; f < t.num_faces(); ++f) {
     const Triangle& tri = triangles[f];
@@ -95,15 +158,15 @@ StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triang
     t.face_edges[f][k] = e;
   }
   t.valence.assign(num_vertices, 0);
-  t.on_border.assign(num_vertices, 0);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
     for (const uint32_t v : t.edges[e]) {
       if (t.valence[v] == 0xffff) return InvalidData("vertex " + std::to_string(v) + " has more than 65,535 edges");
       ++t.valence[v];
-      if (t.edge_faces[e][1] == kNone) t.on_border[v] = 1;
     }
   }
   LACERTA_RETURN_IF_ERROR(CheckVertexFans(t));
+  LACERTA_RETURN_IF_ERROR(SetCurves(tags, &t));
+  LACERTA_RETURN_IF_ERROR(JoinBorders(tags.joined, &t));
   return t;
 }
 
@@ -117,13 +180,16 @@ Topology Refine(const Topology& c) {
   t.edge_faces.resize(t.edges.size());
   t.valence = c.valence;
   t.valence.resize(t.num_vertices);
-  t.on_border = c.on_border;
-  t.on_border.resize(t.num_vertices);
+  t.on_curve.assign(t.edges.size(), 0);
+  t.role = c.role;
+  t.role.resize(t.num_vertices);
+  if (!c.master.empty()) t.master.assign(t.edges.size(), kNone);
   for (uint32_t e = 0; e < E; ++e) {
-    const bool border = c.edge_faces[e][1] == kNone;
-    t.valence[V + e] = border ? 4 : 6;
-    t.on_border[V + e] = border;
+    t.valence[V + e] = c.is_border(e) ? 4 : 6;
+    t.role[V + e] = c.on_curve[e] ? CurveRole::kCurve : CurveRole::kSmooth;
     for (uint32_t end = 0; end < 2; ++end) {
+      t.on_curve[2 * e + end] = c.on_curve[e];
+      if (c.is_copy(e)) t.master[2 * e + end] = 2 * c.master[e] + end;
       t.edges[2 * e + end] = {c.edges[e][end], V + e};
       for (int side = 0; side < 2; ++side) {
         const uint32_t f = c.edge_faces[e][side];

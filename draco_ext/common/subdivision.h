@@ -20,6 +20,13 @@ namespace lacerta {
 
 inline constexpr uint32_t kNone = 0xffffffffu;
 
+// How curves (border edges and creases) meet at a vertex.
+enum class CurveRole : uint8_t {
+  kSmooth,  // no curve
+  kCurve,   // two curve edges, which continue each other
+  kCorner,  // one, three or more curve edges, or two that do not continue each other
+};
+
 // Tables of one level. An orientable edge-manifold mesh, with or without border.
 struct Topology {
   uint32_t num_vertices = 0;
@@ -28,16 +35,23 @@ struct Topology {
   std::vector<std::array<uint32_t, 3>> face_edges;     // #F x 3 edges; edge k is opposite corner k
   std::vector<std::array<uint32_t, 2>> edge_faces;     // #E x 2 faces; the second is kNone on the border
   std::vector<uint16_t> valence;                       // #V incident edges
-  std::vector<uint8_t> on_border;                      // #V, 1 where the vertex lies on a border edge
+  std::vector<uint8_t> on_curve;                       // #E, 1 for border edges and creases
+  std::vector<CurveRole> role;                         // #V
+  // #E, or empty where no borders are joined: the edge whose midpoint this one shares, or kNone. A master has no master.
+  std::vector<uint32_t> master;
 
   uint32_t num_faces() const { return static_cast<uint32_t>(triangles.size()); }
   uint32_t num_edges() const { return static_cast<uint32_t>(edges.size()); }
+  bool is_border(uint32_t edge) const { return edge_faces[edge][1] == kNone; }
+  // Whether the midpoint of an edge is that of another edge, and so has no coefficients.
+  bool is_copy(uint32_t edge) const { return !master.empty() && master[edge] != kNone; }
 };
 
-// Tables of a base mesh. Fails with kInvalidData where an index is out of range, a triangle is degenerate, an edge has more
-// than two faces or two faces that disagree in orientation, a vertex has no face or more than one fan of faces, or more
-// than 65,535 edges.
-StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triangle>& triangles);
+// Tables of a base mesh: of the triangles that are split, with its curves. Vertices of no such triangle are isolated. Fails with
+// kInvalidData where an index is out of range, a triangle is degenerate, an edge has more than two faces or two faces that
+// disagree in orientation, a vertex has more than one fan of faces or more than 65,535 edges, or the tags do not have the
+// shapes that BaseTags tells.
+StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triangle>& triangles, const BaseTags& tags = {});
 
 // Tables of the next finer level. Counts must fit: 4 #F < 2^32 (SubdividedCounts checks it for decoders).
 Topology Refine(const Topology& coarse);

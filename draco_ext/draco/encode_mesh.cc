@@ -22,8 +22,8 @@ Status CheckRemeshable(const TriangleMesh& mesh) {
   if (mesh.triangles.size() < kFewestTriangles) return Unsupported("too few triangles to be worth remeshing");
   const StatusOr<Topology> topology = BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles);
   if (!topology.ok()) return Unsupported("not an oriented manifold: " + topology.status().message());
-  for (uint32_t v = 0; v < topology.value().num_vertices; ++v) {
-    if (topology.value().on_border[v]) return Unsupported("the surface has a border (at vertex " + std::to_string(v) + ")");
+  for (uint32_t e = 0; e < topology.value().num_edges(); ++e) {
+    if (topology.value().is_border(e)) return Unsupported("the surface has a border (at vertex " + std::to_string(topology.value().edges[e][0]) + ")");
   }
   return Status();
 }

@@ -45,6 +45,18 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;  // #F, indices < #V
 };
 
+// What a base mesh says beyond its triangles. Every vector may be empty: nothing of the kind.
+struct BaseTags {
+  std::vector<uint8_t> still;    // #F0, 1: the triangle is never split (components kept as they are)
+  std::vector<uint8_t> crease;   // #E of the topology of the split triangles, 1: a crease, which stencils do not cross
+  std::vector<uint8_t> corner;   // #V0, 1: the curve that passes here (two border or crease edges) bends sharply
+  // #V0, the first vertex at the same position. Border edges that join the same two of them are one curve, cut where the
+  // surface is not manifold: the midpoints of all of them take the position of the first one's.
+  std::vector<uint32_t> joined;
+
+  bool empty() const { return still.empty() && crease.empty() && corner.empty() && joined.empty(); }
+};
+
 // A mesh with subdivision connectivity. Level 0 is the base mesh; level i+1 splits every triangle of level i into four.
 // The transform is interpolating, so the positions of level i are the first ones of the finest level: the vertices of
 // level i come first, then one new vertex per edge of level i in the order of its edges (common/subdivision.h).
@@ -53,6 +65,7 @@ struct SemiRegularMesh {
   uint32_t num_base_vertices = 0;        // #V0
   int num_levels = 0;                    // levels above the base
   std::vector<Vec3f> positions;          // #V of the finest level
+  BaseTags tags = {};
 };
 
 }  // namespace lacerta

@@ -146,8 +146,8 @@ TEST(PredictMidpointsTest, ReproducesCubicsOnTheRegularGrid) {
     const Vec3f& a = mesh.positions[t.edges[e][0]];
     const Vec3f& b = mesh.positions[t.edges[e][1]];
     ExpectNear(midpoints[e], {(a.x + b.x) / 2, (a.y + b.y) / 2, midpoints[e].z},
-               t.on_border[t.edges[e][0]] ? 8.0f : 1e-6f);
-    if (t.on_border[t.edges[e][0]] || t.on_border[t.edges[e][1]]) continue;
+               t.role[t.edges[e][0]] != CurveRole::kSmooth ? 8.0f : 1e-6f);
+    if (t.role[t.edges[e][0]] != CurveRole::kSmooth || t.role[t.edges[e][1]] != CurveRole::kSmooth) continue;
     EXPECT_NEAR(midpoints[e].z, cubic(midpoints[e].x, midpoints[e].y), 1e-5);
     ++checked;
   }

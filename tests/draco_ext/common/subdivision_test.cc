@@ -50,7 +50,7 @@ void ExpectConsistent(const Topology& t) {
   ASSERT_EQ(t.face_edges.size(), t.triangles.size());
   ASSERT_EQ(t.edge_faces.size(), t.edges.size());
   ASSERT_EQ(t.valence.size(), t.num_vertices);
-  ASSERT_EQ(t.on_border.size(), t.num_vertices);
+  ASSERT_EQ(t.role.size(), t.num_vertices);
   std::vector<uint32_t> valence(t.num_vertices), border(t.num_vertices), uses(t.num_edges());
   for (uint32_t f = 0; f < t.num_faces(); ++f) {
     for (int k = 0; k < 3; ++k) {
@@ -79,7 +79,7 @@ void ExpectConsistent(const Topology& t) {
   }
   for (uint32_t v = 0; v < t.num_vertices; ++v) {
     EXPECT_EQ(t.valence[v], valence[v]);
-    EXPECT_EQ(t.on_border[v], border[v]);
+    EXPECT_EQ(t.role[v] != CurveRole::kSmooth, border[v] != 0);
   }
 }
 
@@ -123,7 +123,6 @@ TEST(BuildTopologyTest, NamesEachDefect) {
       {"three faces at an edge", 5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, "more than two faces meet at edge (0, 1)"},
       {"misoriented", 4, {{0, 1, 2}, {0, 1, 3}}, "opposite orientation meet at edge (0, 1)"},
       {"same face twice", 3, {{0, 1, 2}, {1, 2, 0}}, "opposite orientation meet at edge"},
-      {"isolated vertex", 4, {{0, 1, 2}}, "vertex 3 has no face"},
       {"pinched border", 5, {{0, 1, 2}, {0, 3, 4}}, "vertex 0 joins several fans"},
       {"closed and open fan",
        6,
@@ -206,7 +205,8 @@ TEST(RefineTest, AgreesWithBuildTopologyUpToEdgeNumbers) {
     const StatusOr<Topology> built = BuildTopology(refined.num_vertices, refined.triangles);
     ASSERT_TRUE(built.ok()) << built.status().message();
     EXPECT_EQ(built.value().valence, refined.valence);
-    EXPECT_EQ(built.value().on_border, refined.on_border);
+    EXPECT_EQ(built.value().role, refined.role);
+    EXPECT_EQ(built.value().on_curve, refined.on_curve);
     ASSERT_EQ(built.value().num_edges(), refined.num_edges());
     for (uint32_t f = 0; f < refined.num_faces(); ++f) {
       for (int k = 0; k < 3; ++k) {

@@ -53,7 +53,7 @@ void ExpectClosedManifold(const TriangleMesh& mesh, const CollapseHistory& histo
   const StatusOr<Topology> built = BuildTopology(num_vertices, triangles);
   ASSERT_TRUE(built.ok()) << built.status().message() << " after " << time << " collapses";
   const Topology& t = built.value();
-  EXPECT_EQ(std::count(t.on_border.begin(), t.on_border.end(), 1), 0);
+  EXPECT_EQ(std::count(t.on_curve.begin(), t.on_curve.end(), 1), 0);
   EXPECT_EQ(static_cast<int>(t.num_vertices) - static_cast<int>(t.num_edges()) + static_cast<int>(t.num_faces()), euler);
 }
 
