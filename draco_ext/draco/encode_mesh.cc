@@ -16,16 +16,13 @@
 namespace lacerta {
 namespace {
 
-// Ok where the remesher of this version can take the mesh, or why not.
-Status CheckRemeshable(const TriangleMesh& mesh) {
+// The topology of a mesh that the remesher of this version can take, or why it cannot.
+StatusOr<Topology> RemeshableTopology(const TriangleMesh& mesh) {
   constexpr size_t kFewestTriangles = 500;
   if (mesh.triangles.size() < kFewestTriangles) return Unsupported("too few triangles to be worth remeshing");
-  const StatusOr<Topology> topology = BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles);
+  StatusOr<Topology> topology = BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles);
   if (!topology.ok()) return Unsupported("not an oriented manifold: " + topology.status().message());
-  for (uint32_t e = 0; e < topology.value().num_edges(); ++e) {
-    if (topology.value().is_border(e)) return Unsupported("the surface has a border (at vertex " + std::to_string(topology.value().edges[e][0]) + ")");
-  }
-  return Status();
+  return topology;
 }
 
 // Measured error of every level that `stream` decodes to.
@@ -105,10 +102,10 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
   const auto progress = [&](double share, const char* stage) {
     if (options.progress) options.progress(share, stage);
   };
-  LACERTA_RETURN_IF_ERROR(CheckRemeshable(mesh));
+  LACERTA_ASSIGN_OR_RETURN(const Topology topology, RemeshableTopology(mesh));
   progress(0.0, "simplifying");
-  const CollapseHistory history = Decimate(mesh, DecimateOptions());
-  const InputSurface surface(mesh);
+  const CollapseHistory history = Decimate(mesh, topology, DecimateOptions());
+  const InputSurface surface(mesh, topology);
   LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen,
                            CodeAtTarget(surface, history, meter, target, options.mode, options.progress));
   progress(0.95, "comparing with Draco");

@@ -43,10 +43,11 @@ class Reach {
 // costs: little where the vertex was found by piercing, so that vertices just do not drift; much where it was not, since the
 // surface is not flat there in the sense that planes presume.
 Vec3f Weigh(const SurfaceTarget& target, size_t v, const Vec3f& offset) {
-  constexpr float kPiercedSlideCost = 0.05f, kOtherSlideCost = 0.15f;
+  constexpr float kPiercedSlideCost = 0.05f, kOtherSlideCost = 0.15f, kCurveSlideCost = 0.5f;
+  const bool on_curve = target.topologies.back().role[v] != CurveRole::kSmooth;
   const size_t num_base = target.points.size() - target.piercing.size();
   const bool pierced = v < num_base || target.piercing[v - num_base] == PiercingKind::kNormal;
-  const float slide_cost = pierced ? kPiercedSlideCost : kOtherSlideCost;
+  const float slide_cost = on_curve ? kCurveSlideCost : pierced ? kPiercedSlideCost : kOtherSlideCost;
   const Vec3f& n = target.normals[v];
   return offset * slide_cost + n * ((1 - slide_cost) * Dot(offset, n));
 }

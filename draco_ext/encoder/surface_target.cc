@@ -51,7 +51,7 @@ StencilSpread SpreadStencils(const Topology& topology, const StencilTable& table
 }
 
 SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
-  std::vector<Topology> topologies = {BuildTopology(mesh.mesh.num_base_vertices, mesh.mesh.base_triangles).value()};
+  std::vector<Topology> topologies = {BuildTopology(mesh.mesh.num_base_vertices, mesh.mesh.base_triangles, mesh.mesh.tags).value()};
   StencilTable stencils(topologies[0]);
   std::vector<StencilSpread> spreads;
   for (int level = 0; level < mesh.mesh.num_levels; ++level) {

@@ -27,7 +27,28 @@ BaseDomain::BaseDomain(const CollapseHistory& history, uint32_t time) : history_
 void BaseDomain::BuildTables() {
   base_face_.assign(history_.num_faces(), kNone);
   for (uint32_t f = 0; f < history_face_.size(); ++f) base_face_[history_face_[f]] = f;
-  topology_ = BuildTopology(num_vertices(), triangles_).value();  // a closed manifold stays one through every collapse
+  topology_ = BuildTopology(num_vertices(), triangles_).value();  // a manifold stays one through every collapse
+  tags_ = FindTags();
+  if (!tags_.empty()) topology_ = BuildTopology(num_vertices(), triangles_, tags_).value();
+}
+
+BaseTags BaseDomain::FindTags() const {
+  BaseTags tags;
+  std::vector<uint8_t> crease(topology_.num_edges(), 0);
+  std::vector<uint32_t> num_curve_edges(num_vertices(), 0);
+  for (uint32_t e = 0; e < topology_.num_edges(); ++e) {
+    const uint32_t f = topology_.edge_faces[e][0];
+    const bool on_curve = history_.is_curve(history_face_[f], (EdgeCorner(topology_, f, e) + rotation_[f]) % 3);
+    crease[e] = on_curve && !topology_.is_border(e);
+    for (const uint32_t v : topology_.edges[e]) num_curve_edges[v] += on_curve;
+  }
+  if (std::find(crease.begin(), crease.end(), 1) != crease.end()) tags.crease = std::move(crease);
+  std::vector<uint8_t> corner(num_vertices(), 0);
+  for (uint32_t v = 0; v < num_vertices(); ++v) {
+    corner[v] = num_curve_edges[v] == 2 && history_.role(input_vertex_[v]) == CurveRole::kCorner;
+  }
+  if (std::find(corner.begin(), corner.end(), 1) != corner.end()) tags.corner = std::move(corner);
+  return tags;
 }
 
 void BaseDomain::Reorder(const std::vector<uint32_t>& vertex_map, const std::vector<Triangle>& triangles) {
@@ -88,7 +109,7 @@ std::optional<ChartPoint> BaseDomain::ToChart(uint32_t center, const DomainPoint
   }
   for (int k = 0; k < 3; ++k) {
     const uint32_t edge = topology_.face_edges[center][k];
-    if (FaceAcross(topology_, center, edge) != point.face) continue;
+    if (FaceAcross(topology_, center, edge) != point.face) continue;  // kNone across the border is no point's face
     // The apex of the neighbor is the reflection (-1, 1, 1) of corner k, with the -1 at k.
     const int apex = EdgeCorner(topology_, point.face, edge);
     const double gamma = point.barycentric[apex];
@@ -112,6 +133,7 @@ std::optional<DomainPoint> BaseDomain::FromChart(uint32_t center, const ChartPoi
     if (w1 < -kSlack || w2 < -kSlack) continue;
     const uint32_t edge = topology_.face_edges[center][k];
     const uint32_t face = FaceAcross(topology_, center, edge);
+    if (face == kNone) return std::nullopt;
     const int apex = EdgeCorner(topology_, face, edge);
     DomainPoint result{face, {}};
     result.barycentric[apex] = gamma;

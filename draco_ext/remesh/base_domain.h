@@ -25,7 +25,9 @@ class BaseDomain {
   const std::vector<Triangle>& triangles() const { return triangles_; }
   // Input vertex at which a base vertex stands.
   uint32_t input_vertex(uint32_t v) const { return input_vertex_[v]; }
+  // With creases and corners.
   const Topology& topology() const { return topology_; }
+  const BaseTags& tags() const { return tags_; }
 
   // Renumbers vertices and faces: vertex_map[v] is the present number of the vertex that will be v, and `triangles` (in new
   // numbers) gives the new order and rotation of the faces.
@@ -42,6 +44,7 @@ class BaseDomain {
 
  private:
   void BuildTables();
+  BaseTags FindTags() const;
 
   const CollapseHistory& history_;
   uint32_t time_;
@@ -50,6 +53,7 @@ class BaseDomain {
   std::vector<uint32_t> history_face_;       // #F0
   std::vector<uint8_t> rotation_;            // corner of the history face at corner 0 of the base face
   std::vector<uint32_t> base_face_;          // by history face, or kNone
+  BaseTags tags_;
   Topology topology_;
 };
 

@@ -28,25 +28,51 @@ Vec3d ClampWeights(const Vec3d& weights) {
   return sum > 0 ? w * (1 / sum) : Vec3d{1, 0, 0};
 }
 
-CollapseHistory::CollapseHistory(const TriangleMesh& mesh)
-    : faces_(mesh.triangles),
-      created_by_(mesh.triangles.size(), kNone),
-      destroyed_by_(mesh.triangles.size(), kNone) {}
+CollapseHistory::CollapseHistory(const Topology& topology)
+    : roles_(topology.role),
+      faces_(topology.triangles),
+      curve_sides_(topology.num_faces(), 0),
+      created_by_(topology.num_faces(), kNone),
+      destroyed_by_(topology.num_faces(), kNone) {
+  for (uint32_t f = 0; f < topology.num_faces(); ++f) {
+    for (int k = 0; k < 3; ++k) curve_sides_[f] |= static_cast<uint8_t>(topology.on_curve[topology.face_edges[f][k]] << k);
+  }
+}
 
 uint32_t CollapseHistory::Append(uint32_t removed, const std::vector<uint32_t>& ring, const std::vector<Vec2d>& chart,
                                  const std::vector<uint32_t>& old_faces, int kept) {
   const uint32_t time = num_collapses();
-  const uint32_t first_new = static_cast<uint32_t>(faces_.size());
-  const size_t k = ring.size();
-  collapses_.push_back({ring_positions_.size(), first_new, static_cast<uint16_t>(k), static_cast<uint16_t>(kept), removed});
+  const uint32_t first_new = num_faces();
+  const int k = static_cast<int>(ring.size());
+  collapses_.push_back({ring_positions_.size(), first_new, static_cast<uint16_t>(k), static_cast<uint16_t>(old_faces.size()),
+                        static_cast<uint16_t>(kept), removed});
   ring_positions_.insert(ring_positions_.end(), chart.begin(), chart.end());
   old_faces_.insert(old_faces_.end(), old_faces.begin(), old_faces.end());
-  for (const uint32_t f : old_faces) {
+  old_faces_.resize(ring_positions_.size(), kNone);
+  // Whether p_i is on a curve with v, and whether the side p_i p_{i+1} of the polygon is on one.
+  std::vector<uint8_t> curve_spoke(k, 0), curve_side(k, 0);
+  for (int i = 0; i < static_cast<int>(old_faces.size()); ++i) {
+    const uint32_t f = old_faces[i];
     destroyed_by_[f] = time;
-    rotations_.push_back(faces_[f][0] == removed ? 0 : faces_[f][1] == removed ? 1 : 2);
+    const int corner = faces_[f][0] == removed ? 0 : faces_[f][1] == removed ? 1 : 2;
+    rotations_.push_back(static_cast<uint8_t>(corner));
+    curve_side[i] = is_curve(f, corner);
+    curve_spoke[i] |= static_cast<uint8_t>(is_curve(f, (corner + 2) % 3));
+    curve_spoke[(i + 1) % k] |= static_cast<uint8_t>(is_curve(f, (corner + 1) % 3));
   }
-  for (size_t i = kept + 1; i < kept + k - 1; ++i) {
-    faces_.push_back({ring[kept], ring[i % k], ring[(i + 1) % k]});
+  rotations_.resize(ring_positions_.size(), 0);
+  // v was on a curve to p_j and one other neighbor: the edge between them is on it now, the side p_{k-1} p_0 on the border.
+  if (curve_spoke[kept]) {
+    if (static_cast<int>(old_faces.size()) < k) curve_side[k - 1] = 1;
+  } else {
+    std::fill(curve_spoke.begin(), curve_spoke.end(), 0);
+  }
+  for (int m = 0; m < k - 2; ++m) {
+    const int a = (kept + 1 + m) % k, b = (kept + 2 + m) % k;
+    const bool to_a = m == 0 ? curve_side[kept] : curve_spoke[a];
+    const bool to_b = m == k - 3 ? curve_side[b] : curve_spoke[b];
+    faces_.push_back({ring[kept], ring[a], ring[b]});
+    curve_sides_.push_back(static_cast<uint8_t>(curve_side[a] | to_b << 1 | to_a << 2));
     created_by_.push_back(time);
     destroyed_by_.push_back(kNone);
   }
@@ -66,7 +92,7 @@ DomainPoint CollapseHistory::ForwardOnce(const DomainPoint& point, const Collaps
   const Vec2d* ring = &ring_positions_[c.first_ring];
   const uint32_t* old = &old_faces_[c.first_ring];
   const int k = c.valence;
-  const int i = static_cast<int>(std::find(old, old + k, point.face) - old);
+  const int i = static_cast<int>(std::find(old, old + c.num_old_faces, point.face) - old);
   const int r = rotations_[c.first_ring + i];
   const double w1 = point.barycentric[(r + 1) % 3], w2 = point.barycentric[(r + 2) % 3];
   const Vec2d &p1 = ring[i], &p2 = ring[(i + 1) % k];
@@ -94,7 +120,7 @@ DomainPoint CollapseHistory::BackwardOnce(const DomainPoint& point, const Collap
   double best = -std::numeric_limits<double>::max();
   int best_i = 0;
   Vec3d best_weights{1, 0, 0};
-  for (int i = 0; i < k; ++i) {
+  for (int i = 0; i < c.num_old_faces; ++i) {
     const Vec3d weights = BarycentricIn(q, Vec2d{}, ring[i], ring[(i + 1) % k]);
     if (MinWeight(weights) <= best) continue;
     best = MinWeight(weights);

@@ -1,10 +1,12 @@
-// The sequence of half-edge collapses that leads from a closed mesh to its coarsest base mesh, kept as a chain of 2-D charts
+// The sequence of half-edge collapses that leads from a mesh to its coarsest base mesh, kept as a chain of 2-D charts
 // so that every point of the mesh maps to every intermediate base mesh and back: the parametrization of
 // [Lee et al. 1998] (MAPS), one chart per removed vertex, exact in both directions.
 //
 // Faces are numbered for life: those of the input first, then the ones that each collapse makes. A collapse removes vertex v
 // with the ring p_0 .. p_{k-1} (counterclockwise) in favor of p_j: the k old faces (v, p_i, p_{i+1}) give way to the k - 2
 // new faces (p_j, p_i, p_{i+1}), i = j+1 .. j+k-2. Both sets cover one polygon of the chart, which has v at its origin.
+// A vertex on the border has k - 1 old faces, and v lies on the side p_{k-1} p_0 of the polygon; j is 0 or k - 1. A vertex on a
+// crease lies on the diagonal between the two neighbors on the crease, one of which is p_j. So curves are mapped onto curves.
 #ifndef LACERTA_REMESH_COLLAPSE_HISTORY_H_
 #define LACERTA_REMESH_COLLAPSE_HISTORY_H_
 
@@ -33,16 +35,20 @@ struct Vec2d {
 
 class CollapseHistory {
  public:
-  explicit CollapseHistory(const TriangleMesh& mesh);
+  // topology: of the input mesh, with its curves.
+  explicit CollapseHistory(const Topology& topology);
 
   // Appends a collapse. ring: #k vertices, chart: #k their chart positions, old_faces: #k with old_faces[i] = (v, p_i, p_{i+1})
-  // in any rotation. Returns the number of the first of the k - 2 new faces.
+  // in any rotation, one less on the border. Returns the number of the first of the k - 2 new faces.
   uint32_t Append(uint32_t removed, const std::vector<uint32_t>& ring, const std::vector<Vec2d>& chart,
                   const std::vector<uint32_t>& old_faces, int kept);
 
   uint32_t num_collapses() const { return static_cast<uint32_t>(collapses_.size()); }
   uint32_t num_faces() const { return static_cast<uint32_t>(faces_.size()); }  // of all times
   const Triangle& face(uint32_t f) const { return faces_[f]; }
+  // Whether the side of a face opposite to one of its corners is an edge of a curve.
+  bool is_curve(uint32_t f, int corner) const { return (curve_sides_[f] >> corner & 1) != 0; }
+  CurveRole role(uint32_t input_vertex) const { return roles_[input_vertex]; }
 
   // Faces that exist after the first `time` collapses, in increasing number.
   std::vector<uint32_t> FacesAt(uint32_t time) const;
@@ -54,20 +60,23 @@ class CollapseHistory {
 
  private:
   struct Collapse {
-    size_t first_ring;       // into ring_positions_, old_faces_, rotations_
+    size_t first_ring;       // into ring_positions_, old_faces_, rotations_: #k each
     uint32_t first_new_face;
     uint16_t valence;        // k
+    uint16_t num_old_faces;  // k, or k - 1 on the border
     uint16_t kept;           // j
     uint32_t removed;
   };
   DomainPoint ForwardOnce(const DomainPoint& point, const Collapse& c) const;
   DomainPoint BackwardOnce(const DomainPoint& point, const Collapse& c) const;
 
+  std::vector<CurveRole> roles_;                     // per vertex of the input
   std::vector<Triangle> faces_;
+  std::vector<uint8_t> curve_sides_;                 // per face: bit k for the side opposite to corner k
   std::vector<uint32_t> created_by_, destroyed_by_;  // per face: collapse, or kNone
   std::vector<Collapse> collapses_;
   std::vector<Vec2d> ring_positions_;
-  std::vector<uint32_t> old_faces_;
+  std::vector<uint32_t> old_faces_;  // kNone after the last one on the border
   std::vector<uint8_t> rotations_;  // corner of the old face at which v stands
 };
 

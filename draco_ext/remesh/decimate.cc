@@ -1,6 +1,7 @@
 #include "remesh/decimate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <queue>
@@ -17,10 +18,15 @@ constexpr size_t kMaxRing = 64;
 // Twice the area of an old face in its chart, whose radius is 1: below, points would not come back where they were.
 constexpr double kLeastChartArea = 1e-9;
 
-// The fan of faces around one vertex. ring[i] are its neighbors counterclockwise; faces[i] = (v, ring[i], ring[i+1]).
+// The fan of faces around one vertex. ring[i] are its neighbors counterclockwise; faces[i] = (v, ring[i], ring[i+1]), one less
+// than neighbors where the vertex is on the border.
 struct Fan {
   std::vector<uint32_t> ring;
   std::vector<uint32_t> faces;
+  int curve[2] = {-1, -1};  // of a vertex on a curve: the neighbors on it, as indices into the ring
+
+  int size() const { return static_cast<int>(ring.size()); }
+  bool is_open() const { return faces.size() < ring.size(); }
 };
 
 // The best collapse of one vertex into a neighbor.
@@ -37,7 +43,7 @@ struct HeapEntry {
 
 class Decimator {
  public:
-  Decimator(const TriangleMesh& mesh, const DecimateOptions& options);
+  Decimator(const TriangleMesh& mesh, const Topology& topology, const DecimateOptions& options);
   CollapseHistory Run();
 
  private:
@@ -45,6 +51,7 @@ class Decimator {
   Candidate BestCandidate(uint32_t v, const Fan& fan) const;  // of a vertex of at most kMaxRing faces
   double Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& chart, const std::vector<Vec3d>& old_normals, int kept) const;
   bool KeepsTopology(const Fan& fan, int kept) const;
+  bool CanLoseAFace(uint32_t v) const;
   void Collapse(uint32_t v, const Fan& fan, int kept);
   void Push(uint32_t v);
 
@@ -52,6 +59,7 @@ class Decimator {
   std::vector<Vec3d> positions_;
   std::vector<Quadric> quadrics_;
   std::vector<std::vector<uint32_t>> vertex_faces_;
+  std::vector<uint8_t> on_border_;
   std::vector<uint8_t> blocked_;  // no collapse of the vertex was sound when last looked at
   std::priority_queue<HeapEntry> heap_;
   CollapseHistory history_;
@@ -59,12 +67,21 @@ class Decimator {
   std::vector<double> covered_area_;  // per face of the history: area of the input that it stands for
 };
 
-Decimator::Decimator(const TriangleMesh& mesh, const DecimateOptions& options)
+// The plane through a border edge at right angles to its face, weighted by the squared length of the edge.
+Quadric BorderQuadric(const Vec3d& a, const Vec3d& b, const Vec3d& opposite) {
+  const Vec3d face_normal = Cross(b - a, opposite - a);
+  const double norm = Norm(face_normal);
+  if (!(norm > 0)) return {};
+  return Quadric::OfTriangle(a, b, a + face_normal * (2 * Norm(b - a) / norm));
+}
+
+Decimator::Decimator(const TriangleMesh& mesh, const Topology& topology, const DecimateOptions& options)
     : options_(options),
       quadrics_(mesh.positions.size()),
       vertex_faces_(mesh.positions.size()),
+      on_border_(mesh.positions.size(), 0),
       blocked_(mesh.positions.size(), 0),
-      history_(mesh) {
+      history_(topology) {
   // Centered and scaled to unit size: quadrics lose their digits far from the origin.
   Vec3d low = Vec3Cast<double>(mesh.positions[0]), high = low;
   for (const Vec3f& p : mesh.positions) {
@@ -87,50 +104,89 @@ Decimator::Decimator(const TriangleMesh& mesh, const DecimateOptions& options)
       sum += SquaredNorm(positions_[t[k]] - positions_[t[(k + 1) % 3]]);
     }
   }
+  for (uint32_t e = 0; e < topology.num_edges(); ++e) {
+    if (!topology.is_border(e)) continue;
+    const auto& [a, b] = topology.edges[e];
+    const Vec3d& opposite = positions_[OppositeVertex(topology, topology.edge_faces[e][0], e)];
+    const Quadric q = BorderQuadric(positions_[a], positions_[b], opposite);
+    for (const uint32_t v : {a, b}) {
+      quadrics_[v] += q;
+      on_border_[v] = 1;
+    }
+  }
   length_scale_ = sum / (3.0 * static_cast<double>(mesh.triangles.size()));
 }
 
 Fan Decimator::FanOf(uint32_t v) const {
   const std::vector<uint32_t>& faces = vertex_faces_[v];
-  Fan fan;
-  fan.ring.reserve(faces.size());
-  fan.faces.reserve(faces.size());
-  uint32_t face = faces[0];
-  for (size_t n = 0; n < faces.size(); ++n) {
-    const Triangle& t = history_.face(face);
+  struct Spoke {
+    uint32_t face, first, second;  // (v, first, second)
+  };
+  std::array<Spoke, kMaxRing> spokes;
+  const size_t n = faces.size();
+  for (size_t i = 0; i < n; ++i) {
+    const Triangle& t = history_.face(faces[i]);
     const int corner = t[0] == v ? 0 : t[1] == v ? 1 : 2;
-    const uint32_t next = t[(corner + 2) % 3];
-    fan.ring.push_back(t[(corner + 1) % 3]);
-    fan.faces.push_back(face);
-    for (const uint32_t f : faces) {  // the face that continues at `next`
-      const Triangle& s = history_.face(f);
-      const int c = s[0] == v ? 0 : s[1] == v ? 1 : 2;
-      if (s[(c + 1) % 3] == next) {
-        face = f;
-        break;
-      }
+    spokes[i] = {faces[i], t[(corner + 1) % 3], t[(corner + 2) % 3]};
+  }
+  size_t at = 0;
+  if (on_border_[v]) {  // begin where no face leads to
+    for (size_t i = 0; i < n; ++i) {
+      const bool is_led_to = std::any_of(spokes.begin(), spokes.begin() + n, [&](const Spoke& s) { return s.second == spokes[i].first; });
+      if (!is_led_to) at = i;
     }
+  }
+  Fan fan;
+  fan.ring.reserve(n + 1);
+  fan.faces.reserve(n);
+  for (size_t i = 0; i < n; ++i) {
+    fan.ring.push_back(spokes[at].first);
+    fan.faces.push_back(spokes[at].face);
+    const uint32_t next = spokes[at].second;
+    if (i + 1 == n && on_border_[v]) fan.ring.push_back(next);
+    at = static_cast<size_t>(std::find_if(spokes.begin(), spokes.begin() + n, [&](const Spoke& s) { return s.first == next; }) - spokes.begin());
+  }
+  if (history_.role(v) != CurveRole::kCurve) return fan;
+  if (fan.is_open()) {
+    fan.curve[0] = 0;
+    fan.curve[1] = fan.size() - 1;
+    return fan;
+  }
+  for (int i = 0; i < fan.size(); ++i) {
+    const Triangle& t = history_.face(fan.faces[i]);
+    const int corner = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+    if (history_.is_curve(fan.faces[i], (corner + 2) % 3)) fan.curve[fan.curve[0] < 0 ? 0 : 1] = i;
   }
   return fan;
 }
 
-// The ring flattened around v at the origin by the conformal map z^a of [Duchamp et al. 1997]: angles scaled to 2 pi.
+// The ring flattened around v at the origin by the conformal map z^a of [Duchamp et al. 1997]: angles scaled to 2 pi. At a
+// vertex on a curve the angles on either side of the curve are scaled to pi, so that the curve runs straight through it.
 std::vector<Vec2d> FlattenFan(const Vec3d& center, const Fan& fan, const std::vector<Vec3d>& positions) {
-  const size_t k = fan.ring.size();
-  std::vector<double> angle(k), radius(k);
-  double total = 0;
-  for (size_t i = 0; i < k; ++i) {
+  const int k = fan.size(), num_faces = static_cast<int>(fan.faces.size());
+  std::vector<double> angle(k, 0.0), radius(k);
+  double total = 0, scale = 0;
+  for (int i = 0; i < k; ++i) {
+    radius[i] = Norm(positions[fan.ring[i]] - center);
+    scale = std::max(scale, radius[i]);
+  }
+  for (int i = 0; i < num_faces; ++i) {
     const Vec3d a = positions[fan.ring[i]] - center, b = positions[fan.ring[(i + 1) % k]] - center;
-    radius[i] = Norm(a);
-    angle[i] = std::atan2(Norm(Cross(a, b)), Dot(a, b));
-    angle[i] = std::max(angle[i], 1e-4);
+    angle[i] = std::max(std::atan2(Norm(Cross(a, b)), Dot(a, b)), 1e-4);
     total += angle[i];
   }
-  const double exponent = 2 * kPi / total;
-  const double scale = *std::max_element(radius.begin(), radius.end());
+  const double exponent = (fan.is_open() ? kPi : 2 * kPi) / total;
+  if (fan.curve[0] >= 0 && !fan.is_open()) {  // each side of the crease for itself
+    double side = 0;
+    for (int i = fan.curve[0]; i < fan.curve[1]; ++i) side += angle[i];
+    for (int i = 0; i < k; ++i) {
+      const bool between = i >= fan.curve[0] && i < fan.curve[1];
+      angle[i] *= kPi / ((between ? side : total - side) * exponent);
+    }
+  }
   std::vector<Vec2d> chart(k);
   double theta = 0;
-  for (size_t i = 0; i < k; ++i) {
+  for (int i = 0; i < k; ++i) {
     const double r = std::pow(std::max(radius[i] / scale, 1e-6), exponent);
     chart[i] = {r * std::cos(theta), r * std::sin(theta)};
     theta += angle[i] * exponent;
@@ -144,19 +200,25 @@ double Orientation(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
 
 // Whether every face of the fan has area in the chart. An angle is at most the sum of the others, so flattening opens it to 180
 // degrees at most, which it does at a vertex in the plane of its ring but outside of it.
-bool IsStarShaped(const std::vector<Vec2d>& chart) {
-  for (size_t i = 0; i < chart.size(); ++i) {
+bool IsStarShaped(const std::vector<Vec2d>& chart, size_t num_faces) {
+  for (size_t i = 0; i < num_faces; ++i) {
     if (!(Orientation(Vec2d{}, chart[i], chart[(i + 1) % chart.size()]) > kLeastChartArea)) return false;
   }
   return true;
 }
 
+bool Decimator::CanLoseAFace(uint32_t v) const { return vertex_faces_[v].size() > (on_border_[v] ? 1 : 3); }
+
 bool Decimator::KeepsTopology(const Fan& fan, int kept) const {
-  const int k = static_cast<int>(fan.ring.size());
-  const uint32_t u = fan.ring[kept], before = fan.ring[(kept + k - 1) % k], after = fan.ring[(kept + 1) % k];
-  if (vertex_faces_[before].size() <= 3 || vertex_faces_[after].size() <= 3) return false;
-  const int new_valence = static_cast<int>(vertex_faces_[u].size()) + k - 4;
-  if (new_valence < 3 || new_valence > std::min(options_.max_valence, static_cast<int>(kMaxRing))) return false;
+  const int k = fan.size();
+  const uint32_t u = fan.ring[kept];
+  // The other vertices of the faces at the edge that goes: two, or one on the border.
+  const uint32_t before = fan.is_open() && kept == 0 ? kNone : fan.ring[(kept + k - 1) % k];
+  const uint32_t after = fan.is_open() && kept == k - 1 ? kNone : fan.ring[(kept + 1) % k];
+  if ((before != kNone && !CanLoseAFace(before)) || (after != kNone && !CanLoseAFace(after))) return false;
+  const int gone = fan.is_open() ? 1 : 2;
+  const int new_valence = static_cast<int>(vertex_faces_[u].size() + fan.faces.size()) - 2 * gone;
+  if (new_valence < (on_border_[u] ? 1 : 3) || new_valence > std::min(options_.max_valence, static_cast<int>(kMaxRing) - 1)) return false;
   for (const uint32_t f : vertex_faces_[u]) {  // link condition: no neighbor in common but those two
     for (const uint32_t w : history_.face(f)) {
       if (w == u || w == before || w == after) continue;
@@ -168,7 +230,7 @@ bool Decimator::KeepsTopology(const Fan& fan, int kept) const {
 
 double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& chart, const std::vector<Vec3d>& old_normals,
                        int kept) const {
-  const int k = static_cast<int>(fan.ring.size());
+  const int k = fan.size();
   const uint32_t u = fan.ring[kept];
   double worst_aspect = 1;
   double new_area = 0;
@@ -186,7 +248,7 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
   if (!KeepsTopology(fan, kept)) return kNotSound;
   Quadric q = quadrics_[v];
   q += quadrics_[u];
-  const double valence = static_cast<double>(vertex_faces_[u].size()) + k - 4;
+  const double valence = static_cast<double>(vertex_faces_[u].size() + fan.faces.size()) - 4;
   // A triangle that stands for much more of the input than its own area hides a limb that its samples will miss: quadrics see
   // only how far the limb's sides are away, which is not much, not how long it is (docs/decisions/0004-limbs.md).
   double covered = 0;
@@ -199,15 +261,16 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
 }
 
 Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
-  const int k = static_cast<int>(fan.ring.size());
-  std::vector<Vec3d> old_normals(k);
-  for (int i = 0; i < k; ++i) {
+  const int k = fan.size();
+  std::vector<Vec3d> old_normals(fan.faces.size());
+  for (size_t i = 0; i < old_normals.size(); ++i) {
     old_normals[i] = Normalized(Cross(positions_[fan.ring[i]] - positions_[v], positions_[fan.ring[(i + 1) % k]] - positions_[v]));
   }
   const std::vector<Vec2d> chart = FlattenFan(positions_[v], fan, positions_);
   Candidate best;
-  if (!IsStarShaped(chart)) return best;
+  if (!IsStarShaped(chart, fan.faces.size())) return best;
   for (int j = 0; j < k; ++j) {
+    if (fan.curve[0] >= 0 && j != fan.curve[0] && j != fan.curve[1]) continue;  // along the curve only
     const double cost = Cost(v, fan, chart, old_normals, j);
     if (cost < best.cost) best = {cost, j};
   }
@@ -215,24 +278,25 @@ Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
 }
 
 void Decimator::Push(uint32_t v) {
-  const Candidate candidate = vertex_faces_[v].size() <= kMaxRing ? BestCandidate(v, FanOf(v)) : Candidate();
+  const bool is_removable = history_.role(v) != CurveRole::kCorner && !vertex_faces_[v].empty() && vertex_faces_[v].size() < kMaxRing;
+  const Candidate candidate = is_removable ? BestCandidate(v, FanOf(v)) : Candidate();
   blocked_[v] = candidate.kept < 0;
   if (!blocked_[v]) heap_.push({candidate.cost, v});
 }
 
 void Decimator::Collapse(uint32_t v, const Fan& fan, int kept) {
-  const int k = static_cast<int>(fan.ring.size());
   const uint32_t u = fan.ring[kept];
   const uint32_t first_new = history_.Append(v, fan.ring, FlattenFan(positions_[v], fan, positions_), fan.faces, kept);
   quadrics_[u] += quadrics_[v];
-  for (int i = 0; i < k; ++i) {
-    std::vector<uint32_t>& faces = vertex_faces_[fan.ring[i]];
-    const uint32_t before = fan.faces[(i + k - 1) % k], after = fan.faces[i];
-    faces.erase(std::remove_if(faces.begin(), faces.end(), [&](uint32_t f) { return f == before || f == after; }), faces.end());
-  }
   double covered = 0, new_area = 0;
-  for (const uint32_t f : fan.faces) covered += covered_area_[f];
-  for (uint32_t f = first_new; f < first_new + static_cast<uint32_t>(k - 2); ++f) {
+  for (const uint32_t f : fan.faces) {
+    covered += covered_area_[f];
+    for (const uint32_t w : history_.face(f)) {
+      std::vector<uint32_t>& faces = vertex_faces_[w];
+      if (w != v) faces.erase(std::find(faces.begin(), faces.end(), f));
+    }
+  }
+  for (uint32_t f = first_new; f < history_.num_faces(); ++f) {
     const Triangle& t = history_.face(f);
     for (const uint32_t w : t) vertex_faces_[w].push_back(f);
     covered_area_.push_back(Norm(Cross(positions_[t[1]] - positions_[t[0]], positions_[t[2]] - positions_[t[0]])) / 2);
@@ -270,9 +334,9 @@ CollapseHistory Decimator::Run() {
 
 }  // namespace
 
-CollapseHistory Decimate(const TriangleMesh& mesh, const DecimateOptions& options) {
-  if (mesh.triangles.empty()) return CollapseHistory(mesh);
-  return Decimator(mesh, options).Run();
+CollapseHistory Decimate(const TriangleMesh& mesh, const Topology& topology, const DecimateOptions& options) {
+  if (mesh.triangles.empty()) return CollapseHistory(topology);
+  return Decimator(mesh, topology, options).Run();
 }
 
 }  // namespace lacerta

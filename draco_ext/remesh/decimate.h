@@ -1,11 +1,11 @@
-// Simplification of a closed manifold to its coarsest base mesh by half-edge collapses in order of quadric error
+// Simplification of a manifold to its coarsest base mesh by half-edge collapses in order of quadric error
 // [Garland, Heckbert 1997], keeping the parametrization of the input over every intermediate mesh [Lee et al. 1998].
 #ifndef LACERTA_REMESH_DECIMATE_H_
 #define LACERTA_REMESH_DECIMATE_H_
 
 #include <cstdint>
-#include <functional>
 
+#include "common/subdivision.h"
 #include "lacerta/mesh.h"
 #include "remesh/collapse_history.h"
 
@@ -17,9 +17,10 @@ struct DecimateOptions {
   double min_normal_cosine = 0.2;  // between a new triangle and the one it replaces
 };
 
-// mesh: closed, edge-manifold, oriented, one fan per vertex (BuildTopology succeeds and there is no border).
-// A collapse is sound when it keeps the topology (link condition), turns no triangle over and its chart has no fold.
-CollapseHistory Decimate(const TriangleMesh& mesh, const DecimateOptions& options);
+// mesh: oriented manifold, with or without border, one fan per vertex. topology: its own, with its curves; corners
+// (CurveRole::kCorner) are never removed, and a vertex on a curve only along the curve. A collapse is sound when it keeps the
+// topology (link condition), turns no triangle over and its chart has no fold.
+CollapseHistory Decimate(const TriangleMesh& mesh, const Topology& topology, const DecimateOptions& options);
 
 }  // namespace lacerta
 

@@ -20,6 +20,11 @@ struct Site {
   double parameter_distance = 0;  // from the middle of its edge, in lengths of the edge
 };
 
+// Whether there is nothing left to fall back to.
+bool IsLastResort(const Site& site) {
+  return site.kind == PiercingKind::kParametric || (site.kind == PiercingKind::kCurve && site.parameter_distance == 0);
+}
+
 // Squared length of a difference of barycentric coordinates in an equilateral triangle of edge length 1.
 double SquaredChartLength(const ChartPoint& d) { return -(d.x * d.y + d.y * d.z + d.z * d.x); }
 
@@ -38,9 +43,23 @@ class LevelPiercer {
 
  private:
   uint32_t BaseFace(uint32_t face) const { return face >> (2 * level_); }
+  struct Expectation;
+  struct FaceSites;
   Site FindSite(uint32_t edge, PiercingKind first_kind) const;
+  Site PiercedSite(uint32_t edge) const;
+  Site ClosestSite(uint32_t edge, const Vec3f& position) const;
+  Site ParametricSite(const Expectation& expected) const;
+  Site FindCurveSite(uint32_t edge, PiercingKind first_kind) const;
   bool Confirms(uint32_t edge, const ChartPoint& middle, double edge_length, Site* site) const;
+  Expectation Expect(uint32_t edge) const;
+  Site SiteAt(const SurfacePoint& point, PiercingKind kind) const;
+  bool IsSound(uint32_t edge, const Expectation& expected, Site* site) const;
+  FaceSites SitesOf(uint32_t face, const std::vector<Site>& midpoints) const;
+  bool Folds(const FaceSites& sites, const int (&child)[3]) const;
+  bool FoldsAround(uint32_t edge, const std::vector<Site>& midpoints) const;
   std::vector<uint8_t> FoldedMidpoints(const std::vector<Site>& midpoints) const;
+  Vec3f NeighborMean(uint32_t edge, const std::vector<Site>& midpoints) const;
+  void Relax(std::vector<Site>* midpoints) const;
 
   const InputSurface& surface_;
   const BaseDomain& domain_;
@@ -59,82 +78,205 @@ bool LevelPiercer::Confirms(uint32_t edge, const ChartPoint& middle, double edge
   const uint32_t b0 = BaseFace(coarse_.edge_faces[edge][0]), b1 = BaseFace(coarse_.edge_faces[edge][1]);
   const std::optional<ChartPoint> q = domain_.ToChart(b0, site->parameter);
   if (!q || (b1 != b0 && site->parameter.face != b0 && site->parameter.face != b1)) return false;
+  for (int k = 0; k < 3; ++k) {  // not across a curve
+    if ((*q)[k] < 0 && domain_.topology().on_curve[domain_.topology().face_edges[b0][k]]) return false;
+  }
   site->parameter_distance = std::sqrt(std::max(0.0, SquaredChartLength(*q - middle))) / edge_length;
   return site->parameter_distance <= options_.max_parameter_distance;
 }
 
-Site LevelPiercer::FindSite(uint32_t edge, PiercingKind first_kind) const {
+// On a curve: where the plane across the edge at the predicted midpoint meets the input's curve, so that nothing is left to
+// code along the edge, else halfway in the parametrization.
+Site LevelPiercer::FindCurveSite(uint32_t edge, PiercingKind first_kind) const {
   const auto& [a, b] = coarse_.edges[edge];
   const uint32_t center = BaseFace(coarse_.edge_faces[edge][0]);
   const ChartPoint qa = *domain_.ToChart(center, sites_[a].parameter), qb = *domain_.ToChart(center, sites_[b].parameter);
-  const ChartPoint middle = (qa + qb) * 0.5;
-  const double chart_length = std::sqrt(std::max(1e-30, SquaredChartLength(qb - qa)));
-  const Vec3f& origin = predicted_[edge];
-  const Vec3f& normal = frames_[edge].normal;
-  const float edge_length = Norm(sites_[b].position - sites_[a].position);
-  const float reach = static_cast<float>(options_.max_distance) * edge_length;
-
-  const auto site_at = [&](const SurfacePoint& point, PiercingKind kind) {
-    const Vec3d w{point.barycentric[0], point.barycentric[1], point.barycentric[2]};
-    return Site{point.position, surface_.NormalAt(point.face, w), domain_.FromInput({point.face, w}), kind, 0};
+  const auto site_at = [&](double share) {
+    const DomainPoint parameter{center, ClampWeights(qa * (1 - share) + qb * share)};
+    const DomainPoint on_input = domain_.ToInput(parameter);
+    return Site{surface_.PositionAt(on_input.face, on_input.barycentric),
+                surface_.NormalAt(on_input.face, on_input.barycentric), parameter, PiercingKind::kCurve, std::fabs(share - 0.5)};
   };
-  const auto faces_same_way = [&](const Site& site) { return Dot(site.normal, normal) >= options_.min_normal_cosine; };
-
   if (first_kind == PiercingKind::kNormal) {
-    std::vector<LineHit> hits;
-    surface_.tree().IntersectLine(origin, normal, -reach, reach, &hits);
-    std::sort(hits.begin(), hits.end(), [](const LineHit& x, const LineHit& y) { return std::fabs(x.t) < std::fabs(y.t); });
-    for (const LineHit& hit : hits) {
-      Site site = site_at(hit.point, PiercingKind::kNormal);
-      site.position = origin + normal * hit.t;
-      if (faces_same_way(site) && Confirms(edge, middle, chart_length, &site)) return site;
+    const Vec3f along = frames_[edge].tangent1;
+    const auto beyond = [&](const Site& site) { return Dot(site.position - predicted_[edge], along) > 0; };
+    constexpr double kFarthest = 0.35;  // from the middle, in lengths of the edge
+    double low = 0.5 - kFarthest, high = 0.5 + kFarthest;
+    if (!beyond(site_at(low)) && beyond(site_at(high))) {
+      for (int i = 0; i < 24; ++i) {
+        const double middle = 0.5 * (low + high);
+        (beyond(site_at(middle)) ? high : low) = middle;
+      }
+      return site_at(low);
     }
   }
-  if (first_kind != PiercingKind::kParametric) {
-    const ClosestPointResult closest = surface_.tree().ClosestPoint(origin, reach * reach);
-    if (closest.point.face != kNone) {
-      Site site = site_at(closest.point, PiercingKind::kClosest);
-      if (faces_same_way(site) && Confirms(edge, middle, chart_length, &site)) return site;
-    }
+  return site_at(0.5);
+}
+
+// What an edge expects of a site for its midpoint.
+struct LevelPiercer::Expectation {
+  uint32_t center;       // base face in whose chart it is looked at
+  ChartPoint middle;     // of the edge
+  double chart_length;   // of the edge
+  float reach;           // model units
+};
+
+LevelPiercer::Expectation LevelPiercer::Expect(uint32_t edge) const {
+  const auto& [a, b] = coarse_.edges[edge];
+  const uint32_t center = BaseFace(coarse_.edge_faces[edge][0]);
+  const ChartPoint qa = *domain_.ToChart(center, sites_[a].parameter), qb = *domain_.ToChart(center, sites_[b].parameter);
+  return {center, (qa + qb) * 0.5, std::sqrt(std::max(1e-30, SquaredChartLength(qb - qa))),
+          static_cast<float>(options_.max_distance) * Norm(sites_[b].position - sites_[a].position)};
+}
+
+Site LevelPiercer::SiteAt(const SurfacePoint& point, PiercingKind kind) const {
+  const Vec3d w{point.barycentric[0], point.barycentric[1], point.barycentric[2]};
+  return {point.position, surface_.NormalAt(point.face, w), domain_.FromInput({point.face, w}), kind, 0};
+}
+
+bool LevelPiercer::IsSound(uint32_t edge, const Expectation& expected, Site* site) const {
+  return Dot(site->normal, frames_[edge].normal) >= options_.min_normal_cosine &&
+         Confirms(edge, expected.middle, expected.chart_length, site);
+}
+
+// The point of the input closest to `position`, else the one at the middle of the edge in the parametrization.
+Site LevelPiercer::ClosestSite(uint32_t edge, const Vec3f& position) const {
+  const Expectation expected = Expect(edge);
+  const ClosestPointResult closest = surface_.tree().ClosestPoint(position, expected.reach * expected.reach);
+  if (closest.point.face != kNone) {
+    Site site = SiteAt(closest.point, PiercingKind::kClosest);
+    if (IsSound(edge, expected, &site)) return site;
   }
-  const std::optional<DomainPoint> parameter = domain_.FromChart(center, middle);
-  const DomainPoint on_input = domain_.ToInput(*parameter);
+  return ParametricSite(expected);
+}
+
+Site LevelPiercer::ParametricSite(const Expectation& expected) const {
+  const DomainPoint parameter = *domain_.FromChart(expected.center, expected.middle);
+  const DomainPoint on_input = domain_.ToInput(parameter);
   return {surface_.PositionAt(on_input.face, on_input.barycentric), surface_.NormalAt(on_input.face, on_input.barycentric),
-          *parameter, PiercingKind::kParametric, 0};
+          parameter, PiercingKind::kParametric, 0};
+}
+
+// The nearest sound hit of the normal line, else the closest point.
+Site LevelPiercer::PiercedSite(uint32_t edge) const {
+  const Expectation expected = Expect(edge);
+  const Vec3f &origin = predicted_[edge], &normal = frames_[edge].normal;
+  std::vector<LineHit> hits;
+  surface_.tree().IntersectLine(origin, normal, -expected.reach, expected.reach, &hits);
+  std::sort(hits.begin(), hits.end(), [](const LineHit& x, const LineHit& y) { return std::fabs(x.t) < std::fabs(y.t); });
+  for (const LineHit& hit : hits) {
+    Site site = SiteAt(hit.point, PiercingKind::kNormal);
+    site.position = origin + normal * hit.t;
+    if (IsSound(edge, expected, &site)) return site;
+  }
+  return ClosestSite(edge, origin);
+}
+
+Site LevelPiercer::FindSite(uint32_t edge, PiercingKind first_kind) const {
+  if (coarse_.on_curve[edge]) return FindCurveSite(edge, first_kind);
+  if (first_kind == PiercingKind::kNormal) return PiercedSite(edge);
+  return first_kind == PiercingKind::kClosest ? ClosestSite(edge, predicted_[edge]) : ParametricSite(Expect(edge));
+}
+
+Vec3f LevelPiercer::NeighborMean(uint32_t edge, const std::vector<Site>& midpoints) const {
+  Vec3f sum;
+  int count = 0;
+  for (const uint32_t v : coarse_.edges[edge]) {
+    sum += sites_[v].position;
+    ++count;
+  }
+  for (const uint32_t face : coarse_.edge_faces[edge]) {
+    if (face == kNone) continue;
+    for (const uint32_t side : coarse_.face_edges[face]) {
+      if (side == edge) continue;
+      sum += midpoints[side].position;
+      ++count;
+    }
+  }
+  return sum * (1.0f / static_cast<float>(count));
+}
+
+// The four children of a coarse face: corners, then midpoints (0, 1, 2: corners; 3 + k: midpoint of the edge opposite to k).
+constexpr int kChildren[4][3] = {{0, 5, 4}, {1, 3, 5}, {2, 4, 3}, {3, 4, 5}};
+
+struct LevelPiercer::FaceSites {
+  const Site* site[6];
+  ChartPoint q[6];  // in the chart of the base face
+  double area;      // of the face in the chart
+};
+
+LevelPiercer::FaceSites LevelPiercer::SitesOf(uint32_t face, const std::vector<Site>& midpoints) const {
+  FaceSites s;
+  for (int k = 0; k < 3; ++k) {
+    s.site[k] = &sites_[coarse_.triangles[face][k]];
+    s.site[3 + k] = &midpoints[coarse_.face_edges[face][k]];
+  }
+  for (int k = 0; k < 6; ++k) s.q[k] = *domain_.ToChart(BaseFace(face), s.site[k]->parameter);
+  s.area = ChartArea(s.q[0], s.q[1], s.q[2]);
+  return s;
+}
+
+bool LevelPiercer::Folds(const FaceSites& s, const int (&child)[3]) const {
+  if (ChartArea(s.q[child[0]], s.q[child[1]], s.q[child[2]]) < options_.min_child_area * s.area) return true;
+  const Site &a = *s.site[child[0]], &b = *s.site[child[1]], &c = *s.site[child[2]];
+  return Dot(Cross(b.position - a.position, c.position - a.position), a.normal + b.normal + c.normal) <= 0;
+}
+
+bool LevelPiercer::FoldsAround(uint32_t edge, const std::vector<Site>& midpoints) const {
+  for (const uint32_t face : coarse_.edge_faces[edge]) {
+    if (face == kNone) continue;
+    const int midpoint = 3 + EdgeCorner(coarse_, face, edge);
+    const FaceSites sites = SitesOf(face, midpoints);
+    for (const auto& child : kChildren) {
+      if (std::find(child, child + 3, midpoint) != child + 3 && Folds(sites, child)) return true;
+    }
+  }
+  return false;
 }
 
 // Marks midpoints that must fall back: in each fine triangle that folds, the one that strays farthest in the parametrization.
 std::vector<uint8_t> LevelPiercer::FoldedMidpoints(const std::vector<Site>& midpoints) const {
-  std::vector<uint8_t> marked(coarse_.num_edges(), 0);
-  for (uint32_t f = 0; f < coarse_.num_faces(); ++f) {
-    const Triangle& t = coarse_.triangles[f];
-    const auto& fe = coarse_.face_edges[f];
-    const uint32_t center = BaseFace(f);
-    const Site* site[6];  // corners, then midpoints
-    ChartPoint q[6];
-    for (int k = 0; k < 3; ++k) {
-      site[k] = &sites_[t[k]];
-      site[3 + k] = &midpoints[fe[k]];
-    }
-    for (int k = 0; k < 6; ++k) q[k] = *domain_.ToChart(center, site[k]->parameter);
-    const double parent_area = ChartArea(q[0], q[1], q[2]);
-    static constexpr int kChildren[4][3] = {{0, 5, 4}, {1, 3, 5}, {2, 4, 3}, {3, 4, 5}};
+  std::vector<uint8_t> folded_corners(coarse_.num_faces(), 0);  // bit k: the midpoint opposite to corner k
+  tbb::parallel_for(uint32_t{0}, coarse_.num_faces(), [&](uint32_t f) {
+    const FaceSites s = SitesOf(f, midpoints);
     for (const auto& child : kChildren) {
-      const Site &a = *site[child[0]], &b = *site[child[1]], &c = *site[child[2]];
-      const bool folds_in_chart =
-          ChartArea(q[child[0]], q[child[1]], q[child[2]]) < options_.min_child_area * parent_area;
-      const Vec3f area = Cross(b.position - a.position, c.position - a.position);
-      const bool turned_over = Dot(area, a.normal + b.normal + c.normal) <= 0;
-      if (!folds_in_chart && !turned_over) continue;
+      if (!Folds(s, child)) continue;
       int worst = -1;
       for (const int corner : child) {
-        if (corner < 3 || site[corner]->kind == PiercingKind::kParametric) continue;
-        if (worst < 0 || site[corner]->parameter_distance > site[worst]->parameter_distance) worst = corner;
+        if (corner < 3 || IsLastResort(*s.site[corner])) continue;
+        if (worst < 0 || s.site[corner]->parameter_distance > s.site[worst]->parameter_distance) worst = corner;
       }
-      if (worst >= 0) marked[fe[worst - 3]] = 1;
+      if (worst >= 0) folded_corners[f] |= static_cast<uint8_t>(1 << (worst - 3));
+    }
+  });
+  std::vector<uint8_t> marked(coarse_.num_edges(), 0);
+  for (uint32_t f = 0; f < coarse_.num_faces(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if ((folded_corners[f] >> k & 1) != 0) marked[coarse_.face_edges[f][k]] = 1;
     }
   }
   return marked;
+}
+
+// Midpoints that are not on their normal line stand where their fallback put them, however uneven. Each moves to the point of the
+// input closest to the mean of its neighbors, and back to its normal line where that has become sound.
+void LevelPiercer::Relax(std::vector<Site>* midpoints) const {
+  std::vector<uint32_t> loose;
+  for (uint32_t e = 0; e < coarse_.num_edges(); ++e) {
+    const PiercingKind kind = (*midpoints)[e].kind;
+    if (kind == PiercingKind::kClosest || kind == PiercingKind::kParametric) loose.push_back(e);
+  }
+  for (int round = 0; round < options_.relaxation_rounds; ++round) {
+    for (const uint32_t e : loose) {
+      Site& site = (*midpoints)[e];
+      if (site.kind == PiercingKind::kNormal) continue;
+      const Site before = site;
+      site = FindSite(e, PiercingKind::kNormal);
+      if (site.kind == PiercingKind::kNormal && !FoldsAround(e, *midpoints)) continue;
+      site = ClosestSite(e, NeighborMean(e, *midpoints));
+      if (site.kind != PiercingKind::kClosest || FoldsAround(e, *midpoints)) site = before;
+    }
+  }
 }
 
 std::vector<Site> LevelPiercer::Run(const StencilTable& stencils, const std::vector<Vec3f>& positions) {
@@ -146,13 +288,15 @@ std::vector<Site> LevelPiercer::Run(const StencilTable& stencils, const std::vec
   // Each round moves at least one midpoint one kind further, so this ends; a few rounds settle it in practice.
   for (;;) {
     const std::vector<uint8_t> folded = FoldedMidpoints(midpoints);
-    if (std::find(folded.begin(), folded.end(), 1) == folded.end()) return midpoints;
+    if (std::find(folded.begin(), folded.end(), 1) == folded.end()) break;
     tbb::parallel_for(uint32_t{0}, coarse_.num_edges(), [&](uint32_t e) {
       if (!folded[e]) return;
       const bool was_normal = midpoints[e].kind == PiercingKind::kNormal;
       midpoints[e] = FindSite(e, was_normal ? PiercingKind::kClosest : PiercingKind::kParametric);
     });
   }
+  Relax(&midpoints);
+  return midpoints;
 }
 
 }  // namespace
@@ -163,6 +307,7 @@ NormalMesh Pierce(const InputSurface& surface, const BaseDomain& domain, const s
   result.mesh.base_triangles = domain.triangles();
   result.mesh.num_base_vertices = domain.num_vertices();
   result.mesh.num_levels = options.num_levels;
+  result.mesh.tags = domain.tags();
   for (uint32_t v = 0; v < domain.num_vertices(); ++v) {
     result.base_points.push_back(surface.mesh().positions[domain.input_vertex(v)]);
   }
@@ -195,9 +340,11 @@ NormalMesh Pierce(const InputSurface& surface, const BaseDomain& domain, const s
 }
 
 double NormalShare(const NormalMesh& mesh) {
-  if (mesh.piercing.empty()) return 1.0;
-  const auto normal = std::count(mesh.piercing.begin(), mesh.piercing.end(), PiercingKind::kNormal);
-  return static_cast<double>(normal) / static_cast<double>(mesh.piercing.size());
+  const auto count = [&](PiercingKind kind) {
+    return static_cast<double>(std::count(mesh.piercing.begin(), mesh.piercing.end(), kind));
+  };
+  const double off_curves = static_cast<double>(mesh.piercing.size()) - count(PiercingKind::kCurve);
+  return off_curves > 0 ? count(PiercingKind::kNormal) / off_curves : 1.0;
 }
 
 }  // namespace lacerta

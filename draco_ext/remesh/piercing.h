@@ -18,6 +18,7 @@ struct PiercingOptions {
   double max_parameter_distance = 0.75; // from the middle of the edge in the parametrization, in lengths of the edge there
   double min_normal_cosine = 0.2;       // between the input's normal and the predicted one
   double min_child_area = 0.02;         // of a fine triangle in the parametrization, as a share of its parent (1/4 is even)
+  int relaxation_rounds = 2;            // over the vertices of a level that are not on their normal line
 };
 
 // Each level: predict the midpoint of every edge with the butterfly stencil, pierce the input along the predicted normal, and

@@ -14,6 +14,7 @@ enum class PiercingKind : uint8_t {
   kNormal,      // where the normal line through the predicted position pierces the surface
   kClosest,     // the surface point closest to the predicted position: piercing was not sound
   kParametric,  // the surface point at the middle of its edge in the parametrization: nothing else was sound
+  kCurve,       // on a border or crease: where the plane across the edge at the predicted position meets the curve
 };
 
 // A remeshed surface: the semi-regular mesh with what the encoder wants to know about the input at its vertices.
@@ -24,7 +25,7 @@ struct NormalMesh {
   std::vector<PiercingKind> piercing;   // #V - #V0, of the vertices above the base, in order
 };
 
-// Share of the vertices above the base that lie on their normal line; 1 where there are none.
+// Share of the vertices above the base, those on curves aside, that lie on their normal line; 1 where there are none.
 double NormalShare(const NormalMesh& mesh);
 
 }  // namespace lacerta

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "remesh/decimate.h"
+#include "draco_ext/remesh/remeshing.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
@@ -17,8 +17,8 @@ class CandidateSearchTest : public ::testing::Test {
  protected:
   CandidateSearchTest()
       : mesh_(shapes::BumpySphere(4, 0.2f)),
-        surface_(mesh_),
-        history_(Decimate(mesh_, DecimateOptions())),
+        surface_(mesh_, testing::TopologyOf(mesh_)),
+        history_(testing::Decimated(mesh_)),
         meter_(SurfaceDistanceMeter::Create(mesh_).value()),
         candidate_(NormalMeshCandidate::Create(surface_, history_, 60, 3).value()),
         remesh_psnr_(PsnrOf(candidate_.RemeshedSurface())) {}

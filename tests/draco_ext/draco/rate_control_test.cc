@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "remesh/decimate.h"
+#include "draco_ext/remesh/remeshing.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
@@ -46,7 +46,7 @@ TEST(ResolveTargetTest, NamesTheValueThatMakesNoSense) {
 // Codes a mesh at a target; keeps what the search needs.
 struct Coder {
   explicit Coder(const TriangleMesh& m)
-      : mesh(m), surface(mesh), history(Decimate(mesh, DecimateOptions())), meter(SurfaceDistanceMeter::Create(mesh).value()) {}
+      : mesh(m), surface(mesh, testing::TopologyOf(mesh)), history(testing::Decimated(mesh)), meter(SurfaceDistanceMeter::Create(mesh).value()) {}
   ChosenStream Code(const ResolvedTarget& target) const {
     return CodeAtTarget(surface, history, meter, target, EncodeMode::kDefault, {}).value();
   }

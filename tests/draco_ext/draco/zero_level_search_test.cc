@@ -7,7 +7,7 @@
 
 #include "draco/zero_level.h"
 #include "lacerta/codec.h"
-#include "remesh/decimate.h"
+#include "draco_ext/remesh/remeshing.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
@@ -59,7 +59,7 @@ TEST_F(ZeroLevelSearchTest, SaysWhenNothingMeetsTheTarget) {
 }
 
 TEST_F(ZeroLevelSearchTest, SimplerOnlyWhereItBeatsWhatThereIs) {
-  const CollapseHistory history = Decimate(mesh_, DecimateOptions());
+  const CollapseHistory history = testing::Decimated(mesh_);
   const ResolvedTarget target{false, 0, 50};
   MeasuredStream coded;
   coded.meets_target = true;
@@ -78,7 +78,7 @@ TEST_F(ZeroLevelSearchTest, SimplerOnlyWhereItBeatsWhatThereIs) {
 }
 
 TEST_F(ZeroLevelSearchTest, SimplerWhereTheTargetWasMissed) {
-  const CollapseHistory history = Decimate(mesh_, DecimateOptions());
+  const CollapseHistory history = testing::Decimated(mesh_);
   MeasuredStream coded;
   coded.psnr = 60;
   coded.stream.base = Bytes(2000);

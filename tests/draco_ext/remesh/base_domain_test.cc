@@ -21,7 +21,7 @@ struct Fixture {
   TriangleMesh mesh;
   CollapseHistory history;
 
-  Fixture(TriangleMesh input, uint32_t target) : mesh(std::move(input)), history(Decimate(mesh, {target, 12, 0.2})) {}
+  Fixture(TriangleMesh input, uint32_t target) : mesh(std::move(input)), history(testing::Decimated(mesh, {target, 12, 0.2})) {}
   BaseDomain Domain() const { return BaseDomain(history, history.num_collapses()); }
 };
 

@@ -32,7 +32,8 @@ std::vector<Vec2d> Hexagon() {
 
 // The top removed in favor of ring vertex `kept`.
 CollapseHistory AfterOneCollapse(int kept) {
-  CollapseHistory history(DoublePyramid());
+  const TriangleMesh mesh = DoublePyramid();
+  CollapseHistory history(BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles).value());
   EXPECT_EQ(history.Append(kTop, {0, 1, 2, 3, 4, 5}, Hexagon(), {0, 1, 2, 3, 4, 5}, kept), 12u);
   return history;
 }

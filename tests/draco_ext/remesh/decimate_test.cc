@@ -26,7 +26,7 @@ using lacerta::testing::Together;
 CollapseHistory DecimateTo(const TriangleMesh& mesh, uint32_t target) {
   DecimateOptions options;
   options.target_vertices = target;
-  return Decimate(mesh, options);
+  return testing::Decimated(mesh, options);
 }
 
 uint32_t VerticesLeft(const TriangleMesh& mesh, const CollapseHistory& history) {
@@ -135,7 +135,7 @@ TEST(Decimate, RespectsTheValenceLimit) {
     DecimateOptions options;
     options.target_vertices = 100;
     options.max_valence = limit;
-    const CollapseHistory history = Decimate(sphere, options);
+    const CollapseHistory history = testing::Decimated(sphere, options);
     uint32_t num_vertices = 0;
     const std::vector<Triangle> triangles = TrianglesAt(history, history.num_collapses(), &num_vertices);
     const std::vector<uint16_t> valence = BuildTopology(num_vertices, triangles).value().valence;
@@ -254,7 +254,7 @@ TEST(Decimate, ChartsHaveNoFlatFace) {
   DecimateOptions options;
   options.target_vertices = 4;
   options.min_normal_cosine = -1;
-  const CollapseHistory history = Decimate(mesh, options);
+  const CollapseHistory history = testing::Decimated(mesh, options);
   EXPECT_GT(history.num_collapses(), mesh.positions.size() / 2);
   for (const double share : {0.3, 1.0}) {
     const auto time = static_cast<uint32_t>(share * history.num_collapses());

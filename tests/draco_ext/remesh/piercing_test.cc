@@ -176,8 +176,8 @@ TEST(Pierce, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(Pierce, TheBaseNeedNotLieOnTheInput) {
   const TriangleMesh input = shapes::BumpySphere(4);
-  const CollapseHistory history = Decimate(input, {80, 12, 0.2});
-  const InputSurface surface(input);
+  const CollapseHistory history = testing::Decimated(input, {80, 12, 0.2});
+  const InputSurface surface(input, testing::TopologyOf(input));
   const BaseDomain domain(history, history.num_collapses());
   for (const float step : {0.01f, 0.05f}) {
     std::vector<Vec3f> base = BasePositions(domain, input);
@@ -212,8 +212,8 @@ TEST(Pierce, EveryBaseOfEveryShapeIsSound) {
   std::vector<shapes::NamedShape> inputs = ClosedShapes();
   for (shapes::NamedShape& mesh : ClosedRealMeshes({{"fertility.ply", 4}, {"fandisk.ply", 0}})) inputs.push_back(std::move(mesh));
   for (const shapes::NamedShape& input : inputs) {
-    const CollapseHistory history = Decimate(input.mesh, {4, 12, 0.2});
-    const InputSurface surface(input.mesh);
+    const CollapseHistory history = testing::Decimated(input.mesh, {4, 12, 0.2});
+    const InputSurface surface(input.mesh, testing::TopologyOf(input.mesh));
     for (int i = 0; i < 6; ++i) {
       const double share = i == 0 ? 1.0 : i == 1 ? 0.0 : 1 - std::pow(std::uniform_real_distribution<double>(0, 1)(random), 3);
       const BaseDomain domain(history, static_cast<uint32_t>(share * history.num_collapses()));
@@ -234,8 +234,8 @@ TEST(Pierce, RealMeshes) {
   const auto meshes = ClosedRealMeshes({{"dragon_50k.ply", 1}, {"armadillo.ply", 0}, {"human_skull.ply", 2}});
   if (meshes.empty()) GTEST_SKIP() << "no real mesh in " LACERTA_TEST_DATA_DIR;
   for (const shapes::NamedShape& input : meshes) {
-    const CollapseHistory history = Decimate(input.mesh, {100, 12, 0.2});
-    const InputSurface surface(input.mesh);
+    const CollapseHistory history = testing::Decimated(input.mesh, {100, 12, 0.2});
+    const InputSurface surface(input.mesh, testing::TopologyOf(input.mesh));
     for (const uint32_t size : {100u, 900u}) {
       SCOPED_TRACE(input.name + ", base of " + std::to_string(size));
       const BaseDomain domain(history, TimeOf(history, input.mesh, size));
@@ -276,8 +276,8 @@ TEST(Pierce, SurvivesDegenerateInput) {
   inputs.push_back(DoublePyramid(3000));
   inputs.push_back(shapes::ThinPlate(8, 0.0f));
   for (size_t i = 0; i < inputs.size(); ++i) {
-    const CollapseHistory history = Decimate(inputs[i], {4, 12, 0.2});
-    const InputSurface surface(inputs[i]);
+    const CollapseHistory history = testing::Decimated(inputs[i], {4, 12, 0.2});
+    const InputSurface surface(inputs[i], testing::TopologyOf(inputs[i]));
     for (const uint32_t size : {4u, 50u, 300u}) {
       SCOPED_TRACE("input " + std::to_string(i) + ", base of " + std::to_string(size));
       const BaseDomain domain(history, TimeOf(history, inputs[i], size));

@@ -82,6 +82,15 @@ inline TriangleMesh Tetrahedron() {
   return {{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
 }
 
+// The topology of a manifold without creases.
+inline Topology TopologyOf(const TriangleMesh& mesh) {
+  return BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles).value();
+}
+
+inline CollapseHistory Decimated(const TriangleMesh& mesh, const DecimateOptions& options = {}) {
+  return Decimate(mesh, TopologyOf(mesh), options);
+}
+
 // Of the base mesh with about so many vertices.
 inline uint32_t TimeOf(const CollapseHistory& history, const TriangleMesh& mesh, uint32_t num_base_vertices) {
   const auto count = static_cast<uint32_t>(mesh.positions.size());
@@ -98,8 +107,9 @@ inline std::vector<Vec3f> BasePositions(const BaseDomain& domain, const Triangle
 inline NormalMesh Remesh(const TriangleMesh& mesh, uint32_t num_base_vertices, int num_levels) {
   DecimateOptions decimation;
   decimation.target_vertices = num_base_vertices;
-  const CollapseHistory history = Decimate(mesh, decimation);
-  const InputSurface surface(mesh);
+  const Topology topology = TopologyOf(mesh);
+  const CollapseHistory history = Decimate(mesh, topology, decimation);
+  const InputSurface surface(mesh, topology);
   const BaseDomain domain(history, history.num_collapses());
   PiercingOptions options;
   options.num_levels = num_levels;
