@@ -288,21 +288,22 @@ void Decimator::Collapse(uint32_t v, const Fan& fan, int kept) {
   const uint32_t u = fan.ring[kept];
   const uint32_t first_new = history_.Append(v, fan.ring, FlattenFan(positions_[v], fan, positions_), fan.faces, kept);
   quadrics_[u] += quadrics_[v];
-  double covered = 0, new_area = 0;
+  // The area that an old face stood for goes to the new faces that take its place in the chart, a third at each of three points.
+  covered_area_.resize(history_.num_faces(), 0.0);
   for (const uint32_t f : fan.faces) {
-    covered += covered_area_[f];
+    for (int k = 0; k < 3; ++k) {
+      Vec3d weights{1.0 / 6, 1.0 / 6, 1.0 / 6};
+      weights[k] = 4.0 / 6;
+      covered_area_[history_.Forward({f, weights}, history_.num_collapses()).face] += covered_area_[f] / 3;
+    }
     for (const uint32_t w : history_.face(f)) {
       std::vector<uint32_t>& faces = vertex_faces_[w];
       if (w != v) faces.erase(std::find(faces.begin(), faces.end(), f));
     }
   }
   for (uint32_t f = first_new; f < history_.num_faces(); ++f) {
-    const Triangle& t = history_.face(f);
-    for (const uint32_t w : t) vertex_faces_[w].push_back(f);
-    covered_area_.push_back(Norm(Cross(positions_[t[1]] - positions_[t[0]], positions_[t[2]] - positions_[t[0]])) / 2);
-    new_area += covered_area_.back();
+    for (const uint32_t w : history_.face(f)) vertex_faces_[w].push_back(f);
   }
-  for (uint32_t f = first_new; f < covered_area_.size(); ++f) covered_area_[f] *= covered / new_area;
   vertex_faces_[v] = {};
 }
 
