@@ -10,6 +10,7 @@
 #include "lacerta/surface_distance.h"
 #include "remesh/base_domain.h"
 #include "remesh/piercing.h"
+#include "remesh/surface_fit.h"
 
 namespace lacerta {
 namespace {
@@ -43,7 +44,9 @@ StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const InputSurface& su
   domain.Reorder(base.vertex_map, base.mesh.triangles);
   PiercingOptions options;
   options.num_levels = num_levels;
-  return NormalMeshCandidate(std::move(base), Pierce(surface, domain, BaseOf(domain, input).positions, options));
+  NormalMesh remesh = Pierce(surface, domain, BaseOf(domain, input).positions, options);
+  FitToInput(surface, SurfaceFitOptions(), &remesh);
+  return NormalMeshCandidate(std::move(base), std::move(remesh));
 }
 
 StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(double lambda, double descent_lambda, EncodeMode mode) const {

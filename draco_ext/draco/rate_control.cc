@@ -35,7 +35,7 @@ int TypicalRung(double psnr) { return RungOfSize(200 * std::pow(2.0, (psnr - 70)
 
 // Levels that bring a base to at least as many vertices as the input has; chords of the remesh then cost little.
 int LevelsFor(double num_base_vertices, double num_input_vertices) {
-  constexpr double kVertexShare = 1.5;
+  constexpr double kVertexShare = 0.7;
   constexpr int kMostLevels = 10;
   int levels = 0;
   for (double v = num_base_vertices; v < kVertexShare * num_input_vertices && levels < kMostLevels; v *= 4) ++levels;
@@ -106,8 +106,8 @@ class Ladder {
 
   Status Make(int number, Rung* rung) const {
     const double goal = TypicalPsnr(target_, num_input_);
-    constexpr double kComfort = 6;         // dB: a remesh nearer to the goal than that costs bytes...
-    constexpr double kMostVertices = 8.0;  // ...and gets one level more, up to so many times the input's vertices
+    constexpr double kComfort = 12;         // dB: a remesh nearer to the goal than that costs bytes...
+    constexpr double kMostVertices = 6.0;  // ...and gets one level more, up to so many times the input's vertices
     for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
       LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate,
                                NormalMeshCandidate::Create(surface_, history_, RungSize(number), levels));

@@ -63,9 +63,7 @@ SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
   for (size_t level = topologies.size() - 1; level > 0; --level) {
     masses[level - 1] = LumpMasses(topologies[level - 1], masses[level]);
   }
-  std::vector<Vec3f> points = mesh.mesh.positions;
-  std::copy(mesh.base_points.begin(), mesh.base_points.end(), points.begin());
-  return {std::move(topologies), std::move(stencils), std::move(spreads),  std::move(points),
+  return {std::move(topologies), std::move(stencils), std::move(spreads),  mesh.mesh.positions,
           mesh.surface_normals,  std::move(masses),   mesh.piercing};
 }
 

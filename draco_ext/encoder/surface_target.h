@@ -39,7 +39,6 @@ struct SurfaceTarget {
   int num_levels() const { return static_cast<int>(spreads.size()); }
 };
 
-// points: #V; the vertices of `mesh` moved onto the input where they are not on it (base vertices on the lattice).
 SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh);
 
 }  // namespace lacerta

@@ -308,9 +308,6 @@ NormalMesh Pierce(const InputSurface& surface, const BaseDomain& domain, const s
   result.mesh.num_base_vertices = domain.num_vertices();
   result.mesh.num_levels = options.num_levels;
   result.mesh.tags = domain.tags();
-  for (uint32_t v = 0; v < domain.num_vertices(); ++v) {
-    result.base_points.push_back(surface.mesh().positions[domain.input_vertex(v)]);
-  }
   std::vector<Vec3f>& positions = result.mesh.positions;
   positions = base_positions;
 

@@ -18,6 +18,7 @@
 #include "remesh/decimate.h"
 #include "remesh/input_surface.h"
 #include "remesh/piercing.h"
+#include "remesh/surface_fit.h"
 
 namespace lacerta {
 namespace {
@@ -65,19 +66,26 @@ int main(int argc, char** argv) {
     for (uint32_t v = 0; v < domain.num_vertices(); ++v) positions.push_back(input.positions[domain.input_vertex(v)]);
     PiercingOptions options;
     options.num_levels = levels;
-    const NormalMesh remesh = Pierce(surface, domain, positions, options);
+    NormalMesh remesh = Pierce(surface, domain, positions, options);
     const double pierced = Now();
+    if (std::getenv("FIT")) {
+      SurfaceFitOptions fit;
+      if (const char* t = std::getenv("STIFF")) fit.stiffness = std::atof(t);
+      if (const char* t = std::getenv("SPV")) fit.samples_per_vertex = std::atof(t);
+      FitToInput(surface, fit, &remesh);
+    }
+    const double fitted = Now();
     const TriangleMesh finest = MeshAtLevel(remesh.mesh, levels).value();
     const SurfaceDistance distance = meter.Measure(finest, SurfaceDistanceOptions::RmsOnly()).value();
     rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     std::printf(
         "{\"file\": \"%s\", \"triangles\": %zu, \"vertices\": %zu, \"base\": %u, \"coarsest\": %u, \"psnr\": %.2f, \"forward\": %.2f, \"backward\": %.2f, \"normal\": %.4f, \"flipped\": %.6f, "
-        "\"decimate\": %.2f, \"prepare\": %.2f, \"pierce\": %.2f, \"bytes_per_triangle\": %.0f}\n",
+        "\"decimate\": %.2f, \"prepare\": %.2f, \"pierce\": %.2f, \"fit\": %.2f, \"bytes_per_triangle\": %.0f}\n",
         argv[i], input.triangles.size(), finest.positions.size(), domain.num_vertices(), num_vertices - history.num_collapses(), Psnr(distance.Rms(), meter.diagonal()),
         Psnr(distance.forward.rms, meter.diagonal()), Psnr(distance.backward.rms, meter.diagonal()),
         NormalShare(remesh), FlippedShare(finest, remesh.surface_normals), decimated - start, prepared - decimated,
-        pierced - prepared, 1024.0 * static_cast<double>(usage.ru_maxrss) / static_cast<double>(input.triangles.size()));
+        pierced - prepared, fitted - pierced, 1024.0 * static_cast<double>(usage.ru_maxrss) / static_cast<double>(input.triangles.size()));
     std::fflush(stdout);
     if (const char* out = std::getenv("OUT")) (void)WriteMeshFile(finest, out);
   }

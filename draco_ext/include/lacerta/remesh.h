@@ -20,7 +20,6 @@ enum class PiercingKind : uint8_t {
 // A remeshed surface: the semi-regular mesh with what the encoder wants to know about the input at its vertices.
 struct NormalMesh {
   SemiRegularMesh mesh;
-  std::vector<Vec3f> base_points;       // #V0, points of the input that the base vertices stand for
   std::vector<Vec3f> surface_normals;   // #V, unit normal of the input at each vertex
   std::vector<PiercingKind> piercing;   // #V - #V0, of the vertices above the base, in order
 };

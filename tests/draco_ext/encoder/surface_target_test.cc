@@ -63,19 +63,18 @@ TEST(SurfaceTarget, MassesSumToOneOnEveryLevel) {
 TEST(SurfaceTarget, MassIsTheShareOfTheArea) {
   NormalMesh mesh;  // two triangles of areas 1/2 and 3/2
   mesh.mesh = {{{0, 1, 2}, {2, 1, 3}}, 4, 0, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 2, 0}}};
-  mesh.base_points = mesh.mesh.positions;
   mesh.surface_normals.assign(4, {0, 0, 1});
   const SurfaceTarget target = MakeSurfaceTarget(mesh);
   const std::vector<float> expected = {1 / 12.0f, 1 / 3.0f, 1 / 3.0f, 1 / 4.0f};
   for (size_t v = 0; v < 4; ++v) EXPECT_NEAR(target.masses[0][v], expected[v], 1e-6);
 }
 
-TEST(SurfaceTarget, TakesBaseVerticesBackToTheInput) {
+TEST(SurfaceTarget, TakesPointsAsTheyAre) {
   NormalMesh mesh = Remesh(shapes::BumpySphere(3), 40, 2);
   for (uint32_t v = 0; v < 40; ++v) mesh.mesh.positions[v] += Vec3f{0.1f, 0, 0};
   const SurfaceTarget target = MakeSurfaceTarget(mesh);
   for (size_t v = 0; v < target.points.size(); ++v) {
-    EXPECT_EQ(target.points[v], v < 40 ? mesh.base_points[v] : mesh.mesh.positions[v]);
+    EXPECT_EQ(target.points[v], mesh.mesh.positions[v]);
   }
 }
 

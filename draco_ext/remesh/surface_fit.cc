@@ -1,0 +1,137 @@
+#include "remesh/surface_fit.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <vector>
+
+#include "common/subdivision.h"
+#include "geometry/triangle_tree.h"
+
+namespace lacerta {
+namespace {
+
+// A point of the input and what it says of the vertices of the nearest triangle: `gap` is to be undone by moves d_k of its corners
+// along their normals, sum slopes[k] * d_k = gap.
+struct Sample {
+  Triangle corners;
+  std::array<double, 3> slopes{};
+  double gap = 0;
+};
+
+// About `count` points, spread evenly over the area: one face after the other gets its share, in a low-discrepancy sequence.
+std::vector<SurfacePoint> SpreadPoints(const TriangleMesh& mesh, double count) {
+  std::vector<double> areas;
+  double total = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
+    areas.push_back(Norm(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a)));
+    total += areas.back();
+  }
+  std::vector<SurfacePoint> points;
+  double due = 0;
+  for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+    for (due += count * areas[f] / total; due >= 1; due -= 1) {
+      const auto n = static_cast<double>(points.size());
+      double u = std::fmod(n * 0.7548776662466927, 1.0), v = std::fmod(n * 0.5698402909980532, 1.0);  // R2 sequence
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      SurfacePoint p;
+      p.face = f;
+      p.barycentric = {static_cast<float>(1 - u - v), static_cast<float>(u), static_cast<float>(v)};
+      points.push_back(p);
+    }
+  }
+  return points;
+}
+
+Sample SampleAt(const InputSurface& surface, const SurfacePoint& point, const TriangleMesh& remesh, const TriangleTree& tree,
+                const std::vector<Vec3f>& normals) {
+  constexpr double kLeastCosine = 0.5;  // between the two surfaces: else the nearest triangle is on another sheet
+  const Vec3d weights{point.barycentric[0], point.barycentric[1], point.barycentric[2]};
+  const Vec3f position = surface.PositionAt(point.face, weights);
+  const SurfacePoint nearest = tree.ClosestPoint(position).point;
+  if (nearest.face == kNone) return {};
+  Sample sample;
+  sample.corners = remesh.triangles[nearest.face];
+  Vec3d p[3];
+  for (int k = 0; k < 3; ++k) p[k] = Vec3Cast<double>(remesh.positions[sample.corners[k]]);
+  const Vec3d normal = Normalized(Cross(p[1] - p[0], p[2] - p[0]));
+  if (Dot(normal, Vec3Cast<double>(surface.NormalAt(point.face, weights))) < kLeastCosine) return {};
+  sample.gap = Dot(Vec3Cast<double>(position - nearest.position), normal);
+  for (int k = 0; k < 3; ++k) {
+    sample.slopes[k] = double{nearest.barycentric[k]} * Dot(normal, Vec3Cast<double>(normals[sample.corners[k]]));
+  }
+  return sample;
+}
+
+// The normal equations of the samples, (sum s s' + stiffness) d = sum gap s.
+class NormalEquations {
+ public:
+  NormalEquations(const std::vector<Sample>& samples, double stiffness) : samples_(samples), stiffness_(stiffness) {}
+
+  std::vector<double> Apply(const std::vector<double>& d) const {
+    std::vector<double> result(d.size());
+    for (size_t v = 0; v < d.size(); ++v) result[v] = stiffness_ * d[v];
+    for (const Sample& s : samples_) {
+      double along = 0;
+      for (int k = 0; k < 3; ++k) along += s.slopes[k] * d[s.corners[k]];
+      for (int k = 0; k < 3; ++k) result[s.corners[k]] += s.slopes[k] * along;
+    }
+    return result;
+  }
+
+  std::vector<double> RightSide(size_t num_vertices) const {
+    std::vector<double> result(num_vertices, 0.0);
+    for (const Sample& s : samples_) {
+      for (int k = 0; k < 3; ++k) result[s.corners[k]] += s.slopes[k] * s.gap;
+    }
+    return result;
+  }
+
+ private:
+  const std::vector<Sample>& samples_;
+  const double stiffness_;
+};
+
+double DotProduct(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+std::vector<double> Solve(const NormalEquations& equations, size_t num_vertices, int iterations) {
+  std::vector<double> solution(num_vertices, 0.0), residual = equations.RightSide(num_vertices), direction = residual;
+  double squared = DotProduct(residual, residual);
+  for (int i = 0; i < iterations && squared > 0; ++i) {
+    const std::vector<double> image = equations.Apply(direction);
+    const double step = squared / DotProduct(direction, image);
+    for (size_t v = 0; v < num_vertices; ++v) {
+      solution[v] += step * direction[v];
+      residual[v] -= step * image[v];
+    }
+    const double next = DotProduct(residual, residual);
+    for (size_t v = 0; v < num_vertices; ++v) direction[v] = residual[v] + next / squared * direction[v];
+    squared = next;
+  }
+  return solution;
+}
+
+}  // namespace
+
+void FitToInput(const InputSurface& surface, const SurfaceFitOptions& options, NormalMesh* remesh) {
+  SemiRegularMesh& mesh = remesh->mesh;
+  Topology topology = BuildTopology(mesh.num_base_vertices, mesh.base_triangles, mesh.tags).value();
+  for (int level = 0; level < mesh.num_levels; ++level) topology = Refine(topology);
+  const TriangleMesh finest{mesh.positions, std::move(topology.triangles)};
+  const TriangleTree tree(finest);
+  const std::vector<SurfacePoint> points =
+      SpreadPoints(surface.mesh(), options.samples_per_vertex * static_cast<double>(finest.positions.size()));
+  std::vector<Sample> samples(points.size());
+  tbb::parallel_for(size_t{0}, points.size(), [&](size_t i) {
+    samples[i] = SampleAt(surface, points[i], finest, tree, remesh->surface_normals);
+  });
+  const std::vector<double> moves = Solve(NormalEquations(samples, options.stiffness), mesh.positions.size(), options.iterations);
+  for (size_t v = 0; v < moves.size(); ++v) mesh.positions[v] += remesh->surface_normals[v] * static_cast<float>(moves[v]);
+}
+
+}  // namespace lacerta
