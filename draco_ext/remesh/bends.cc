@@ -5,7 +5,7 @@
 namespace lacerta {
 namespace {
 
-constexpr double kReach = 1.5;     // in heights of the first face
+constexpr double kReach = 1.5;    // in heights of the first face
 constexpr int kMaxCrossings = 8;  // bounds the walk among slivers
 
 Vec3d At(const TriangleMesh& mesh, uint32_t v) { return Vec3Cast<double>(mesh.positions[v]); }

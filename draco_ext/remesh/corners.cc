@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kAlwaysSharp = 75 * 3.14159265358979323846 / 180;
 constexpr double kSharper = 1.5;  // than the curve is farther on
+constexpr double kClean = 3;      // times the turns at the next vertices: nothing else is near
 
 struct Curve {
   std::vector<uint32_t> vertices;  // without a repeated one where it is closed
@@ -78,18 +79,21 @@ std::vector<double> Turns(const TriangleMesh& mesh, const Curve& curve, int reac
 
 void MarkCorners(const TriangleMesh& mesh, const Curve& curve, double min_turn, std::vector<uint8_t>* corner) {
   const int n = static_cast<int>(curve.vertices.size());
-  const int reach = std::clamp(n / 8, 1, 3);
-  const std::vector<double> turns = Turns(mesh, curve, reach);
-  const auto turn = [&](int i) {
-    if (curve.closed) return turns[static_cast<size_t>((i % n + n) % n)];
-    return i < 0 || i >= n ? 0.0 : turns[static_cast<size_t>(i)];
+  const int reach = n < 16 ? 1 : n < 32 ? 2 : 4;  // even ones see no zigzag
+  const std::vector<double> next_turns = Turns(mesh, curve, 1), turns = Turns(mesh, curve, reach);
+  const auto at = [&](const std::vector<double>& values, int i) {
+    if (curve.closed) return values[static_cast<size_t>((i % n + n) % n)];
+    return i < 0 || i >= n ? 0.0 : values[static_cast<size_t>(i)];
   };
   for (int i = 0; i < n; ++i) {
-    if (turn(i) < min_turn) continue;
-    bool peak = true;
-    for (int d = 1; d < reach; ++d) peak = peak && turn(i) > turn(i - d) && turn(i) >= turn(i + d);
-    const double farther = std::max(turn(i - reach), turn(i + reach));
-    if (peak && (turn(i) >= kAlwaysSharp || turn(i) >= kSharper * farther)) (*corner)[curve.vertices[static_cast<size_t>(i)]] = 1;
+    const double next_turn = at(next_turns, i), turn = at(turns, i);
+    const bool clean =
+        next_turn >= min_turn && next_turn >= kClean * std::max(at(next_turns, i - 1), at(next_turns, i + 1));
+    bool peak = turn >= min_turn;
+    for (int d = 1; d < reach; ++d) peak = peak && turn > at(turns, i - d) && turn >= at(turns, i + d);
+    const double farther = std::max(at(turns, i - reach), at(turns, i + reach));
+    const bool sharp = peak && (turn >= kAlwaysSharp || turn >= kSharper * farther);
+    if (clean || sharp) (*corner)[curve.vertices[static_cast<size_t>(i)]] = 1;
   }
 }
 

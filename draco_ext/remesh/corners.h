@@ -10,11 +10,11 @@
 
 namespace lacerta {
 
-// #V, 1 where two curve edges meet (border edges and those with crease[e] != 0) and the curve turns by `min_turn` radians at
-// least, more than anywhere near it and 1.5 times what it turns farther on. The turn is measured between chords of up to three
-// edges on either side, fewer on short curves, so that a jagged border has no corners. Where a curve turns by 75 degrees or
-// more, what it does farther on does not matter: a square of four edges has four corners.
-// crease: #E. O(n).
+// #V, 1 where two curve edges meet (border edges and those with crease[e] != 0) and the curve turns by `min_turn`
+// radians at least. Either between these two edges, and three times as much as at the next vertices; or between chords
+// of four edges on either side (of one or two on short curves), so that a jagged border has no corners: there it turns
+// more than anywhere near and 1.5 times what it turns farther on, or by 75 degrees, which makes a square of four edges
+// have four corners. crease: #E. O(n).
 std::vector<uint8_t> FindCorners(const TriangleMesh& mesh, const Topology& topology, const std::vector<uint8_t>& crease,
                                  double min_turn);
 

@@ -10,7 +10,10 @@ constexpr size_t kMaxValence = 64;  // of vertices that gaps are closed over: bo
 }  // namespace
 
 CreaseGraph::CreaseGraph(const TriangleMesh& mesh, const Topology& topology)
-    : mesh_(mesh), topology_(topology), begin_(topology.num_vertices + size_t{1}, 0), on_border_(topology.num_vertices, 0) {
+    : mesh_(mesh),
+      topology_(topology),
+      begin_(topology.num_vertices + size_t{1}, 0),
+      on_border_(topology.num_vertices, 0) {
   for (uint32_t v = 0; v < topology.num_vertices; ++v) begin_[v + 1] = begin_[v] + topology.valence[v];
   incident_.resize(begin_.back());
   std::vector<uint32_t> fill(begin_.begin(), begin_.end() - 1);
@@ -98,7 +101,6 @@ void CreaseGraph::DropSpurs(uint32_t min_free, std::vector<uint8_t>* selected) c
       for (const uint32_t e : edges_at(v)) {
         if ((*selected)[e] != 0 && e != before) next = e;
       }
-      if (next == kNone) break;  // the other free end
       chain.push_back(next);
       v = OtherEnd(next, v);
       before = next;
@@ -112,17 +114,20 @@ void CreaseGraph::DropSpurs(uint32_t min_free, std::vector<uint8_t>* selected) c
   }
 }
 
-void CreaseGraph::DropSmall(uint32_t min_edges, std::vector<uint8_t>* selected) const {
+void CreaseGraph::DropSmall(uint32_t min_open, uint32_t min_closed, std::vector<uint8_t>* selected) const {
   std::vector<uint8_t> seen(topology_.num_edges(), 0), visited(topology_.num_vertices, 0);
+  const std::vector<uint32_t> degree = SelectedDegrees(*selected);
   std::vector<uint32_t> network;
   for (uint32_t seed = 0; seed < topology_.num_edges(); ++seed) {
     if ((*selected)[seed] == 0 || seen[seed] != 0) continue;
     network.assign(1, seed);
     seen[seed] = 1;
+    bool open = false;
     for (size_t i = 0; i < network.size(); ++i) {
       for (const uint32_t v : topology_.edges[network[i]]) {
         if (visited[v]) continue;
         visited[v] = 1;
+        open = open || (degree[v] == 1 && !on_border_[v]);
         for (const uint32_t e : edges_at(v)) {
           if ((*selected)[e] == 0 || seen[e] != 0) continue;
           seen[e] = 1;
@@ -130,7 +135,7 @@ void CreaseGraph::DropSmall(uint32_t min_edges, std::vector<uint8_t>* selected) 
         }
       }
     }
-    if (network.size() >= min_edges) continue;
+    if (network.size() >= (open ? min_open : min_closed)) continue;
     for (const uint32_t e : network) (*selected)[e] = 0;
   }
 }

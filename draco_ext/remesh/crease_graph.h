@@ -22,11 +22,13 @@ class CreaseGraph {
   double TurnCosine(uint32_t a, uint32_t b, uint32_t vertex) const;
 
   // Joins free ends to selected edges ahead of them over one or two edges that bend by min_bend (radians) at least.
-  void CloseGaps(const std::vector<double>& bends, double min_bend, double min_cosine, std::vector<uint8_t>* selected) const;
+  void CloseGaps(const std::vector<double>& bends, double min_bend, double min_cosine,
+                 std::vector<uint8_t>* selected) const;
   // Drops chains with a free end that have fewer edges than `min_free`, until there are none.
   void DropSpurs(uint32_t min_free, std::vector<uint8_t>* selected) const;
-  // Drops connected networks of fewer than `min_edges`.
-  void DropSmall(uint32_t min_edges, std::vector<uint8_t>* selected) const;
+  // Drops connected networks of fewer edges than `min_open` where one ends in the middle of the surface, else than
+  // `min_closed`.
+  void DropSmall(uint32_t min_open, uint32_t min_closed, std::vector<uint8_t>* selected) const;
 
  private:
   std::vector<uint32_t> SelectedDegrees(const std::vector<uint8_t>& selected) const;
