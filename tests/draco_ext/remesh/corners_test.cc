@@ -63,12 +63,17 @@ TEST(FindCorners, AStripHasFourHoweverThin) {
   for (const int width : {2, 3, 8}) EXPECT_EQ(BorderCorners(shapes::GridWithBorder(60, width)).size(), 4u) << width;
 }
 
-TEST(FindCorners, ADropHasOne) {
-  // A circle whose first vertex is pulled out.
-  const std::vector<uint32_t> corners = BorderCorners(Disk(40, [](uint32_t i) {
-    return i == 0 ? 1.6 : i == 1 || i == 39 ? 1.25 : 1;
-  }));
-  EXPECT_EQ(corners, std::vector<uint32_t>{1});
+TEST(FindCorners, ALensHasTwo) {
+  // Two arcs of a quarter circle each, which meet at right angles at vertices 1 and 1 + n.
+  for (const uint32_t n : {4u, 10u, 40u}) {
+    TriangleMesh lens = Disk(2 * n, [](uint32_t) { return 1.0; });
+    for (uint32_t i = 0; i < 2 * n; ++i) {
+      const double a = kPi / 4 + kPi / 2 * (i % n) / n, side = i < n ? 1 : -1;
+      lens.positions[1 + i] = {static_cast<float>(side * std::cos(a)),
+                               static_cast<float>(side * (std::sin(a) - std::sqrt(0.5))), 0};
+    }
+    EXPECT_EQ(BorderCorners(lens), (std::vector<uint32_t>{1, 1 + n})) << n;
+  }
 }
 
 TEST(FindCorners, CreasesCountAsBordersDo) {
