@@ -2,6 +2,7 @@
 #ifndef LACERTA_REMESH_PARITY_FOREST_H_
 #define LACERTA_REMESH_PARITY_FOREST_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <utility>
