@@ -273,6 +273,55 @@ TriangleMesh TriangleSoup(int levels) {
   return soup;
 }
 
+TriangleMesh MoebiusBand(int n) {
+  TriangleMesh mesh;
+  for (int i = 0; i < n; ++i) {
+    const double around = 2 * kPi * i / n;
+    for (const double side : {-0.4, 0.4}) {
+      const double r = 1 + side * std::cos(around / 2);
+      mesh.positions.push_back({static_cast<float>(r * std::cos(around)), static_cast<float>(r * std::sin(around)),
+                                static_cast<float>(side * std::sin(around / 2))});
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    const auto a = static_cast<uint32_t>(2 * i), b = a + 1;
+    const bool last = i == n - 1;
+    const uint32_t c = last ? 1 : a + 2, d = last ? 0 : a + 3;
+    mesh.triangles.insert(mesh.triangles.end(), {{a, c, b}, {b, c, d}});
+  }
+  return mesh;
+}
+
+TriangleMesh DoubleSheet(int nx, int ny) {
+  TriangleMesh mesh = GridWithBorder(nx, ny, 0.2f);
+  const size_t one_side = mesh.triangles.size();
+  for (size_t f = 0; f < one_side; ++f) {
+    const Triangle t = mesh.triangles[f];
+    mesh.triangles.push_back({t[0], t[2], t[1]});
+  }
+  return mesh;
+}
+
+TriangleMesh TouchingBoxes(int n) {
+  TriangleMesh mesh = CreasedBox(n);
+  const auto count = static_cast<uint32_t>(mesh.positions.size());
+  const size_t one_box = mesh.triangles.size();
+  std::map<std::array<float, 3>, uint32_t> at;
+  for (uint32_t v = 0; v < count; ++v) at[{mesh.positions[v].x, mesh.positions[v].y, mesh.positions[v].z}] = v;
+  std::vector<uint32_t> moved(count);
+  for (uint32_t v = 0; v < count; ++v) {
+    const Vec3f p = mesh.positions[v] + Vec3f{1, 1, 0};
+    const auto [place, is_new] = at.try_emplace({p.x, p.y, p.z}, static_cast<uint32_t>(mesh.positions.size()));
+    if (is_new) mesh.positions.push_back(p);
+    moved[v] = place->second;
+  }
+  for (size_t f = 0; f < one_box; ++f) {
+    const Triangle t = mesh.triangles[f];
+    mesh.triangles.push_back({moved[t[0]], moved[t[1]], moved[t[2]]});
+  }
+  return mesh;
+}
+
 std::vector<NamedShape> AllShapes() {
   const auto closed = [](std::string name, TriangleMesh mesh, int genus) {
     return NamedShape{std::move(name), std::move(mesh), true, true, 0, genus};

@@ -53,6 +53,15 @@ TriangleMesh WithDegenerateFaces(int levels);
 // Icosphere of which every face has its own three vertices, as STL files do.
 TriangleMesh TriangleSoup(int levels);
 
+// What only the making of manifolds is asked about; not among AllShapes.
+
+// Band of n >= 3 squares, two triangles each, that comes back to its start turned over: no orientation suits all. One border.
+TriangleMesh MoebiusBand(int n);
+// The graph of GridWithBorder and, on the same vertices, its back: each edge inside has four faces, each on the rim two.
+TriangleMesh DoubleSheet(int nx, int ny);
+// CreasedBox twice, as solids that touch along an edge of the cube: n edges of four faces each.
+TriangleMesh TouchingBoxes(int n);
+
 // A shape and what is true of it.
 struct NamedShape {
   std::string name;
@@ -63,7 +72,7 @@ struct NamedShape {
   int genus = 0;         // of manifold shapes
 };
 
-// One of each of the above, a few hundred to a few thousand faces.
+// One of each of the above but those that are said not to be, a few hundred to a few thousand faces.
 std::vector<NamedShape> AllShapes();
 
 }  // namespace lacerta::shapes
