@@ -34,7 +34,8 @@ struct CodingState {
   LevelSteps coarser_steps;
 };
 
-// The coded coefficients of one set, summed where the next edges look for them. Edges are added in order: 0, 1, ...
+// The coded coefficients of one set, summed where the next edges look for them. Edges are added in order: 0, 1, ... but for
+// copies, which have none.
 class CodedNeighbors {
  public:
   explicit CodedNeighbors(const Topology& t)
@@ -75,6 +76,7 @@ void CodeNormalSet(const Topology& t, float step, CodingState* state, std::vecto
   if (!(step > 0)) return;
   CodedNeighbors neighbors(t);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
+    if (t.is_copy(e)) continue;
     const Forecast forecast =
         forecasts.empty() ? Forecast() : Rescale(forecasts[e], state->coarser_steps.normal_step, step);
     const CoefficientContext context = neighbors.ContextOf(e, forecasts.empty() ? nullptr : &forecast);
@@ -96,6 +98,7 @@ void CodeTangentialSet(const Topology& t, float step, const std::vector<int32_t>
   if (!(step > 0)) return;
   CodedNeighbors neighbors(t);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
+    if (t.is_copy(e)) continue;
     const Forecast forecast =
         forecasts.empty() ? Forecast() : Rescale(forecasts[e], state->coarser_steps.tangential_step, step);
     CoefficientContext context = neighbors.ContextOf(e, forecasts.empty() ? nullptr : &forecast);
@@ -118,7 +121,7 @@ void CodeTangentialSet(const Topology& t, float step, const std::vector<int32_t>
 // Codes one level. t: the level whose edges get new midpoints. quantized: shapes as in QuantizedLevel; an encoding
 // coder leaves the coefficients as they are, a decoding coder writes them (all zero on entry). choose(kind, edge,
 // models, context, &value) is called right before each coefficient is coded and may change it: an encoder sees there
-// what each value costs.
+// what each value costs. Copies (Topology::is_copy) have no coefficients: theirs are left alone, and count as zero.
 template <typename Coder, typename Choose = KeepCoefficients>
 void CodeLevel(const Topology& t, const LevelSteps& steps, CodingState* state, QuantizedLevel* quantized, Coder* coder,
                const Choose& choose = {}) {

@@ -47,8 +47,8 @@ void FixHeaderChecksum(size_t header_size, Bytes* bytes) {
 }
 
 // 3 mark, version, levels, two counts of one byte, step, checksum of the base, 2 levels of two steps and a byte,
-// checksum.
-constexpr size_t kHeaderSizeOfTwoLevels = 3 + 1 + 1 + 1 + 1 + 4 + 4 + 2 * 5 + 2;
+// length of the tags, checksum.
+constexpr size_t kHeaderSizeOfTwoLevels = 3 + 1 + 1 + 1 + 1 + 4 + 4 + 2 * 5 + 1 + 2;
 
 TEST(ProgressiveDecoderTest, EveryPrefixDecodesToItsLastCompleteLevel) {
   const BaseMesh base = Octahedron();
@@ -233,7 +233,7 @@ TEST(ProgressiveDecoderTest, TwelveLevelsInFewBytesStayWithinTheLimits) {
   Bytes bytes = {'L', 'A', 'C', 1, 0x1c, 100, 0xc8, 0x01};
   const RefinementBytes real = SmallStream(base, 1);
   bytes.insert(bytes.end(), real.bytes.begin() + 8, real.bytes.begin() + 16);  // step and checksum of the base
-  bytes.insert(bytes.end(), 12 * 4 + 2, 0);
+  bytes.insert(bytes.end(), 12 * 4 + 1 + 2, 0);  // steps, tags, checksum
   FixHeaderChecksum(bytes.size(), &bytes);
   for (uint8_t level = 1; level <= 12; ++level) {
     Crc32 crc;
