@@ -79,7 +79,8 @@ void CodeNormalSet(const Topology& t, float step, CodingState* state, std::vecto
     if (t.is_copy(e)) continue;
     const Forecast forecast =
         forecasts.empty() ? Forecast() : Rescale(forecasts[e], state->coarser_steps.normal_step, step);
-    const CoefficientContext context = neighbors.ContextOf(e, forecasts.empty() ? nullptr : &forecast);
+    CoefficientContext context = neighbors.ContextOf(e, forecasts.empty() ? nullptr : &forecast);
+    if (t.on_curve[e] != 0) context.companion = kCurveCompanion;
     int32_t& q = (*set)[e];
     choose(CoefficientKind::kNormal, e, state->normal, context, &q);
     q = CodeCoefficient(*coder, state->normal, context, q);
@@ -107,10 +108,11 @@ void CodeTangentialSet(const Topology& t, float step, const std::vector<int32_t>
     int32_t& q1 = (*set)[size_t{2} * e];
     int32_t& q2 = (*set)[size_t{2} * e + 1];
     const uint32_t normal_magnitude = Magnitude(normal[e]);
-    context.companion = normal_magnitude == 0 ? 0 : normal_magnitude < 3 ? 1 : 2;
+    const int curve = t.on_curve[e] != 0 ? kCurveCompanion : 0;
+    context.companion = curve + (normal_magnitude == 0 ? 0 : normal_magnitude < 3 ? 1 : 2);
     choose(CoefficientKind::kTangential1, e, state->tangential1, context, &q1);
     q1 = CodeCoefficient(*coder, state->tangential1, context, q1);
-    context.companion = q1 != 0 ? 2 : normal_magnitude != 0 ? 1 : 0;
+    context.companion = curve + (q1 != 0 ? 2 : normal_magnitude != 0 ? 1 : 0);
     choose(CoefficientKind::kTangential2, e, state->tangential2, context, &q2);
     q2 = CodeCoefficient(*coder, state->tangential2, context, q2);
     neighbors.Add(e, static_cast<int32_t>(Magnitude(q1) + Magnitude(q2)));
