@@ -406,7 +406,7 @@ def stencil(level, e):
             corner, other = (b, a) if level.passes(a) else (a, b)
             return [(corner, 3 / 8), (other, 3 / 4), (beyond(other), -1 / 8)]
         return [(a, 1 / 2), (b, 1 / 2)]
-    odd = [v for v in (a, b) if len(level.at_vertex[v]) != 6]
+    odd = [v for v in (a, b) if len(level.at_vertex[v]) != 6 and len(level.at_vertex[v]) <= 256]
     if level.curves(a) or level.curves(b) or not odd:
         result = [(a, 1 / 2), (b, 1 / 2)]
         for f in level.faces(e):
