@@ -58,15 +58,24 @@ Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps, co
   return bytes;
 }
 
-StatusOr<Bytes> WriteTags(const BaseMesh& base, BaseTags tags) {
-  tags = NormalizedTags(std::move(tags));
-  if (!tags.joined.empty() && tags.joined != FirstAtSamePoint(base.lattice)) {
-    return InvalidArgument("the joined vertices are not those that share a point of the base lattice; take a smaller step");
+// Whether decoders, who see the topology `read`, know the same edges, curves and copies as the encoder.
+bool SameCurves(const Topology& read, const Topology& given) {
+  if (read.edges != given.edges || read.on_curve != given.on_curve || read.role != given.role) return false;
+  for (uint32_t e = 0; e < read.num_edges(); ++e) {
+    if (read.is_copy(e) != given.is_copy(e) || (read.is_copy(e) && read.master[e] != given.master[e])) return false;
   }
-  if (tags.empty()) return Bytes();
+  return true;
+}
+
+StatusOr<Bytes> WriteTags(const BaseMesh& base, BaseTags tags, const Topology& topology) {
+  tags = NormalizedTags(std::move(tags));
   RangeEncoder encoder;
-  LACERTA_RETURN_IF_ERROR(CodeBaseTags(base.lattice, base.triangles, &tags, &encoder).status());
-  return encoder.Finish();
+  LACERTA_ASSIGN_OR_RETURN(const Topology read,
+                           tags.empty() ? BuildTopology(static_cast<uint32_t>(base.lattice.size()), base.triangles)
+                                        : CodeBaseTags(base.lattice, base.triangles, &tags, &encoder));
+  if (SameCurves(read, topology)) return tags.empty() ? Bytes() : encoder.Finish();
+  return InvalidArgument("the tags are not those of the topologies, or borders are joined on the base lattice that should not be, or "
+                         "the other way round; take a smaller step");
 }
 
 void PutSegment(int level, const Bytes& payload, Bytes* bytes) {
@@ -132,7 +141,7 @@ StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topol
   if (!(base.step > 0) || !std::isnormal(base.step)) return InvalidArgument("the base step must be a positive number");
   RefinementBytes result;
   if (levels.empty()) return result;
-  LACERTA_ASSIGN_OR_RETURN(const Bytes coded_tags, WriteTags(base, tags));
+  LACERTA_ASSIGN_OR_RETURN(const Bytes coded_tags, WriteTags(base, tags, topologies[0]));
   result.bytes = WriteHeader(base, steps, coded_tags);
   size_t part_begin = 0;
   CodingState state;

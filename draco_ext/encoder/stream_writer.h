@@ -30,7 +30,8 @@ StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_le
 //   levels      L: coefficients; levels[i] has one entry per edge of topologies[i], magnitudes up to kMaxMagnitude, and
 //   is
 //               zero where its step is zero and at copies (Topology::is_copy)
-//   tags        joined: empty, or FirstAtSamePoint(base.lattice) (common/base_tags.h)
+//   tags        decoders take joined vertices from the lattice (FirstAtSamePoint in common/base_tags.h): that must join the
+//               same borders as tags.joined
 // No level, no bytes. Fails with kInvalidArgument where an argument breaks these rules, and with kInvalidData where no triangle
 // is to be split.
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topology> topologies,

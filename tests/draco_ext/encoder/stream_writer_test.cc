@@ -88,7 +88,14 @@ TEST(StreamWriterTest, RefusesTagsThatDoNotFit) {
   EXPECT_EQ(message(base, tags), "");
   BaseMesh apart = base;
   apart.lattice[4][0] += 1;
-  EXPECT_THAT(message(apart, tags), HasSubstr("joined vertices are not those that share a point"));
+  BaseMesh touching = base;
+  touching.lattice[2] = touching.lattice[7];  // no border edge is joined that was not
+  EXPECT_EQ(message(touching, tags), "");
+  touching.lattice[3] = touching.lattice[6];
+  EXPECT_THAT(message(touching, tags), HasSubstr("take a smaller step"));
+  EXPECT_THAT(message(apart, tags), HasSubstr("borders are joined on the base lattice"));
+  const std::vector<Topology> topologies = BuildTopologies(base, 1, tags).value();
+  EXPECT_THAT(WriteRefinement(base, topologies, c.steps, c.levels).status().message(), HasSubstr("not those of the topologies"));
   BaseTags still = tags;
   still.still.assign(6, 1);
   EXPECT_THAT(message(base, still), HasSubstr("nothing to refine"));
