@@ -6,6 +6,7 @@
 //                         corner, 1/2, 1/2 where both are
 //   an end on a curve     the regular 8-point rule, where a face beyond a curve is replaced by the reflection of its triangle
 //   valence 2             3/4, 3/8, -1/8: Zorin's rule for valence 4 with each of its two spokes of no weight left out
+//   a copy                what its master has
 //   valence over 256      counts as regular, so that the work per edge is bounded on hostile connectivity
 #ifndef LACERTA_COMMON_BUTTERFLY_H_
 #define LACERTA_COMMON_BUTTERFLY_H_
@@ -127,6 +128,7 @@ void VisitCurve(const Topology& t, uint32_t edge, const Visitor& visit) {
 template <typename Visitor>
 void VisitStencil(const Topology& t, const StencilTable& table, uint32_t edge, const Visitor& visit) {
   using namespace butterfly_internal;
+  if (t.is_copy(edge)) edge = t.master[edge];
   if (t.on_curve[edge]) return VisitCurve(t, edge, visit);
   const auto& [a, b] = t.edges[edge];
   if (t.role[a] != CurveRole::kSmooth || t.role[b] != CurveRole::kSmooth) return VisitRegular(t, edge, 1.0f, visit);

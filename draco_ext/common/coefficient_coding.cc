@@ -33,7 +33,7 @@ CoefficientContext CodedNeighbors::ContextOf(uint32_t edge, const Forecast* fore
   for (const uint32_t face : topology_.edge_faces[edge]) {
     if (face == kNone) continue;
     for (const uint32_t side : topology_.face_edges[face]) {
-      if (side >= edge) continue;
+      if (side >= edge || topology_.is_copy(side)) continue;
       sum += Magnitude(values_[side]);
       signed_sum += values_[side];
       ++weight;

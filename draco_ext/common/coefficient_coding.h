@@ -34,7 +34,8 @@ struct CodingState {
   LevelSteps coarser_steps;
 };
 
-// The coded coefficients of one set, summed where the next edges look for them. Edges are added in order: 0, 1, ...
+// The coded coefficients of one set, summed where the next edges look for them. Edges are added in order: 0, 1, ... but for
+// copies, which have none.
 class CodedNeighbors {
  public:
   explicit CodedNeighbors(const Topology& t)
@@ -75,9 +76,11 @@ void CodeNormalSet(const Topology& t, float step, CodingState* state, std::vecto
   if (!(step > 0)) return;
   CodedNeighbors neighbors(t);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
+    if (t.is_copy(e)) continue;
     const Forecast forecast =
         forecasts.empty() ? Forecast() : Rescale(forecasts[e], state->coarser_steps.normal_step, step);
-    const CoefficientContext context = neighbors.ContextOf(e, forecasts.empty() ? nullptr : &forecast);
+    CoefficientContext context = neighbors.ContextOf(e, forecasts.empty() ? nullptr : &forecast);
+    if (t.on_curve[e] != 0) context.companion = kCurveCompanion;
     int32_t& q = (*set)[e];
     choose(CoefficientKind::kNormal, e, state->normal, context, &q);
     q = CodeCoefficient(*coder, state->normal, context, q);
@@ -96,6 +99,7 @@ void CodeTangentialSet(const Topology& t, float step, const std::vector<int32_t>
   if (!(step > 0)) return;
   CodedNeighbors neighbors(t);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
+    if (t.is_copy(e)) continue;
     const Forecast forecast =
         forecasts.empty() ? Forecast() : Rescale(forecasts[e], state->coarser_steps.tangential_step, step);
     CoefficientContext context = neighbors.ContextOf(e, forecasts.empty() ? nullptr : &forecast);
@@ -104,10 +108,11 @@ void CodeTangentialSet(const Topology& t, float step, const std::vector<int32_t>
     int32_t& q1 = (*set)[size_t{2} * e];
     int32_t& q2 = (*set)[size_t{2} * e + 1];
     const uint32_t normal_magnitude = Magnitude(normal[e]);
-    context.companion = normal_magnitude == 0 ? 0 : normal_magnitude < 3 ? 1 : 2;
+    const int curve = t.on_curve[e] != 0 ? kCurveCompanion : 0;
+    context.companion = curve + (normal_magnitude == 0 ? 0 : normal_magnitude < 3 ? 1 : 2);
     choose(CoefficientKind::kTangential1, e, state->tangential1, context, &q1);
     q1 = CodeCoefficient(*coder, state->tangential1, context, q1);
-    context.companion = q1 != 0 ? 2 : normal_magnitude != 0 ? 1 : 0;
+    context.companion = curve + (q1 != 0 ? 2 : normal_magnitude != 0 ? 1 : 0);
     choose(CoefficientKind::kTangential2, e, state->tangential2, context, &q2);
     q2 = CodeCoefficient(*coder, state->tangential2, context, q2);
     neighbors.Add(e, static_cast<int32_t>(Magnitude(q1) + Magnitude(q2)));
@@ -118,7 +123,7 @@ void CodeTangentialSet(const Topology& t, float step, const std::vector<int32_t>
 // Codes one level. t: the level whose edges get new midpoints. quantized: shapes as in QuantizedLevel; an encoding
 // coder leaves the coefficients as they are, a decoding coder writes them (all zero on entry). choose(kind, edge,
 // models, context, &value) is called right before each coefficient is coded and may change it: an encoder sees there
-// what each value costs.
+// what each value costs. Copies (Topology::is_copy) have no coefficients: theirs are left alone, and count as zero.
 template <typename Coder, typename Choose = KeepCoefficients>
 void CodeLevel(const Topology& t, const LevelSteps& steps, CodingState* state, QuantizedLevel* quantized, Coder* coder,
                const Choose& choose = {}) {

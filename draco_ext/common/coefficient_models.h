@@ -11,7 +11,8 @@
 namespace lacerta {
 
 inline constexpr int kNumActivityClasses = 14;  // of the expected magnitude
-inline constexpr int kNumCompanionClasses = 3;
+inline constexpr int kNumCompanionClasses = 6;
+inline constexpr int kCurveCompanion = 3;  // added to the class of an edge on a curve
 inline constexpr int kNumSignClasses = 8;
 inline constexpr int kUnaryLength = 14;  // magnitudes up to this one are coded in unary
 inline constexpr int kMaxExponent = 19;  // the rest, m - 14, is below 2^20
@@ -28,7 +29,7 @@ inline int ActivityClass(uint32_t sixteenths) {
 // What is known about a coefficient before it is coded.
 struct CoefficientContext {
   int activity = 0;    // ActivityClass of the expected magnitude
-  int companion = 0;   // what was coded at the same edge before: 0 nothing or zeros .. 2 much
+  int companion = 0;   // what was coded at the same edge before: 0 nothing or zeros .. 2 much; 3 more on a curve
   int sign_class = 0;  // 0: nothing is known about the sign .. 7: neighbors and parent agree on it
   bool expect_negative = false;
 };

@@ -17,6 +17,11 @@ inline constexpr uint8_t kRefinementVersion = 1;
 inline constexpr int kMaxLevels = 12;
 // A base vertex has at most this many edges, so that no stencil makes a decoder slow.
 inline constexpr int kMaxBaseValence = 1024;
+// Bytes that the tags of a base may take: every decision costs less than 12 bits, and there are at most one per triangle, three
+// per triangle for its edges, and one per vertex.
+inline uint64_t MaxTagBytes(uint64_t num_vertices, uint64_t num_triangles) {
+  return 8 + 3 * (num_vertices + 4 * num_triangles) / 2;
+}
 inline constexpr int32_t kMaxLatticeValue = (1 << 24) - 1;  // a binary32 holds it exactly
 
 // The fields of the refinement header. The number of levels is steps.size().
@@ -26,6 +31,7 @@ struct RefinementHeader {
   float base_step = 0.0f;
   uint32_t base_checksum = 0;
   std::vector<LevelSteps> steps;  // of levels 1, 2, ...
+  Bytes tags;                     // payload of CodeBaseTags (common/base_tags_coding.h); empty: none
 };
 
 // CRC-32 over the lattice values (three per vertex) and the triangles (three indices each) as 4-byte little-endian

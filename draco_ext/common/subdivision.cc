@@ -59,7 +59,13 @@ Status CheckVertexFans(const Topology& t) {
   return Status();
 }
 
-StatusOr<std::vector<Triangle>> SplitTriangles(const std::vector<Triangle>& all, const std::vector<uint8_t>& still) {
+StatusOr<std::vector<Triangle>> SplitTriangles(const std::vector<Triangle>& all, const std::vector<uint8_t>& still, uint32_t num_vertices) {
+  for (size_t f = 0; f < all.size(); ++f) {
+    for (const uint32_t v : all[f]) {
+      if (v < num_vertices) continue;
+      return InvalidData("triangle " + std::to_string(f) + " refers to vertex " + std::to_string(v) + " of " + std::to_string(num_vertices));
+    }
+  }
   if (still.empty()) return all;
   if (still.size() != all.size()) return InvalidData("the tags of still triangles are not as many as the triangles");
   std::vector<Triangle> split;
@@ -95,6 +101,7 @@ Status SetCurves(const BaseTags& tags, Topology* t) {
 
 // Sets the masters of border edges that join the same two positions.
 Status JoinBorders(const std::vector<uint32_t>& joined, Topology* t) {
+  t->master.clear();
   if (joined.empty()) return Status();
   if (joined.size() != t->num_vertices) return InvalidData("the joined vertices are not as many as the vertices");
   std::vector<std::pair<uint64_t, uint32_t>> keyed;
@@ -126,15 +133,11 @@ Status JoinBorders(const std::vector<uint32_t>& joined, Topology* t) {
 StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triangle>& all_triangles, const BaseTags& tags) {
   Topology t;
   t.num_vertices = num_vertices;
-  LACERTA_ASSIGN_OR_RETURN(t.triangles, SplitTriangles(all_triangles, tags.still));
+  LACERTA_ASSIGN_OR_RETURN(t.triangles, SplitTriangles(all_triangles, tags.still, num_vertices));
   const std::vector<Triangle>& triangles = t.triangles;
   t.face_edges.resize(triangles.size());
   for (uint32_t f = 0; f < t.num_faces(); ++f) {
     const Triangle& tri = triangles[f];
-    for (const uint32_t v : tri) {
-      if (v < num_vertices) continue;
-      return InvalidData("triangle " + std::to_string(f) + " refers to vertex " + std::to_string(v) + " of " + std::to_string(num_vertices));
-    }
     if (tri[0] == tri[1] || tri[1] == tri[2] || tri[2] == tri[0]) {
       return InvalidData("triangle " + std::to_string(f) + " is degenerate");
     }
@@ -165,9 +168,13 @@ StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triang
     }
   }
   LACERTA_RETURN_IF_ERROR(CheckVertexFans(t));
-  LACERTA_RETURN_IF_ERROR(SetCurves(tags, &t));
-  LACERTA_RETURN_IF_ERROR(JoinBorders(tags.joined, &t));
+  LACERTA_RETURN_IF_ERROR(SetTags(tags, &t));
   return t;
+}
+
+Status SetTags(const BaseTags& tags, Topology* topology) {
+  LACERTA_RETURN_IF_ERROR(SetCurves(tags, topology));
+  return JoinBorders(tags.joined, topology);
 }
 
 Topology Refine(const Topology& c) {

@@ -48,10 +48,14 @@ struct Topology {
 };
 
 // Tables of a base mesh: of the triangles that are split, with its curves. Vertices of no such triangle are isolated. Fails with
-// kInvalidData where an index is out of range, a triangle is degenerate, an edge has more than two faces or two faces that
+// kInvalidData where an index is out of range, a triangle to be split is degenerate, an edge has more than two faces or two faces that
 // disagree in orientation, a vertex has more than one fan of faces or more than 65,535 edges, or the tags do not have the
 // shapes that BaseTags tells.
 StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triangle>& triangles, const BaseTags& tags = {});
+
+// Gives the topology of a base mesh the creases, corners and joined borders of `tags`, whose still triangles it was built
+// with, in place of those that it has. Fails as BuildTopology does.
+Status SetTags(const BaseTags& tags, Topology* topology);
 
 // Tables of the next finer level. Counts must fit: 4 #F < 2^32 (SubdividedCounts checks it for decoders).
 Topology Refine(const Topology& coarse);

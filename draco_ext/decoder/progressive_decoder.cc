@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "common/base_tags.h"
+#include "common/base_tags_coding.h"
 #include "common/butterfly.h"
 #include "common/coefficient_coding.h"
 #include "common/stream_layout.h"
@@ -32,10 +34,9 @@ Status CheckBase(const BaseMesh& base, const DecodeLimits& limits) {
   return Status();
 }
 
-Status CheckHeaderFitsBase(const RefinementHeader& header, const SemiRegularMesh& mesh, float base_step,
-                           uint32_t checksum) {
-  if (header.num_base_vertices == mesh.num_base_vertices && header.num_base_triangles == mesh.base_triangles.size() &&
-      header.base_step == base_step && header.base_checksum == checksum) {
+Status CheckHeaderFitsBase(const RefinementHeader& header, const BaseMesh& base) {
+  if (header.num_base_vertices == base.lattice.size() && header.num_base_triangles == base.triangles.size() &&
+      header.base_step == base.step && header.base_checksum == BaseChecksum(base)) {
     return Status();
   }
   return InvalidData("the refinement was made for another base mesh (" + std::to_string(header.num_base_vertices) +
@@ -43,12 +44,13 @@ Status CheckHeaderFitsBase(const RefinementHeader& header, const SemiRegularMesh
                      " triangles): the base was edited, reordered or mixed up");
 }
 
-Status CheckLevelFits(const Topology& t, int level, const DecodeLimits& limits) {
+Status CheckLevelFits(const Topology& t, size_t num_still, int level, const DecodeLimits& limits) {
   const LevelCounts finer = SubdividedCounts({t.num_vertices, t.num_edges(), t.num_faces()}, 1);
-  if (finer.vertices <= limits.max_vertices && finer.faces <= limits.max_triangles && 2 * finer.edges < kNone)
+  const uint64_t num_triangles = finer.faces + num_still;
+  if (finer.vertices <= limits.max_vertices && num_triangles <= limits.max_triangles && 2 * finer.edges < kNone)
     return Status();
   return LimitExceeded("level " + std::to_string(level) + " (" + std::to_string(finer.vertices) + " vertices, " +
-                       std::to_string(finer.faces) + " triangles) is over the decode limits");
+                       std::to_string(num_triangles) + " triangles) is over the decode limits");
 }
 
 Status CheckValences(const Topology& t) {
@@ -60,14 +62,20 @@ Status CheckValences(const Topology& t) {
   return Status();
 }
 
+// Topology of a base with the tags of its header, which are written too.
+StatusOr<Topology> ReadTopology(const BaseMesh& base, Span<const uint8_t> payload, BaseTags* tags) {
+  if (payload.empty()) return BuildTopology(static_cast<uint32_t>(base.lattice.size()), base.triangles);
+  RangeDecoder decoder(payload);
+  return CodeBaseTags(base.lattice, base.triangles, tags, &decoder);
+}
+
 bool IsFinite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 }  // namespace
 
 struct ProgressiveDecoder::State {
   SemiRegularMesh mesh;
-  float base_step = 0.0f;
-  uint32_t base_checksum = 0;
+  BaseMesh base;
   RefinementOptions options;
 
   std::optional<RefinementHeader> header;
@@ -75,7 +83,8 @@ struct ProgressiveDecoder::State {
   size_t bytes_used = 0;  // that left `pending`
   Status refinement;
 
-  Topology topology;  // of the finest complete level; made when the header has come
+  Topology topology;     // of the finest complete level; made when the header has come
+  size_t num_still = 0;  // triangles that no level splits
   std::optional<StencilTable> stencils;
   CodingState coding;
 
@@ -94,9 +103,12 @@ struct ProgressiveDecoder::State {
 StatusOr<size_t> ProgressiveDecoder::State::TakeHeader(Span<const uint8_t> bytes) {
   LACERTA_ASSIGN_OR_RETURN(std::optional<ReadHeader> read, ReadRefinementHeader(bytes));
   if (!read) return size_t{0};
-  LACERTA_RETURN_IF_ERROR(CheckHeaderFitsBase(read->header, mesh, base_step, base_checksum));
-  LACERTA_ASSIGN_OR_RETURN(topology, BuildTopology(mesh.num_base_vertices, mesh.base_triangles));
+  LACERTA_RETURN_IF_ERROR(CheckHeaderFitsBase(read->header, base));
+  BaseTags tags;
+  LACERTA_ASSIGN_OR_RETURN(topology, ReadTopology(base, read->header.tags, &tags));
   LACERTA_RETURN_IF_ERROR(CheckValences(topology));
+  mesh.tags = std::move(tags);
+  num_still = NumStill(mesh.tags);
   stencils.emplace(topology);
   header = std::move(read->header);
   return read->size;
@@ -104,7 +116,7 @@ StatusOr<size_t> ProgressiveDecoder::State::TakeHeader(Span<const uint8_t> bytes
 
 StatusOr<size_t> ProgressiveDecoder::State::TakeSegment(Span<const uint8_t> bytes) {
   const int level = mesh.num_levels + 1;
-  LACERTA_RETURN_IF_ERROR(CheckLevelFits(topology, level, options.limits));
+  LACERTA_RETURN_IF_ERROR(CheckLevelFits(topology, num_still, level, options.limits));
   LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadSegment> segment, ReadRefinementSegment(bytes, level));
   if (!segment) return size_t{0};
   LACERTA_RETURN_IF_ERROR(AddLevel(header->steps[mesh.num_levels], segment->payload));
@@ -134,8 +146,7 @@ StatusOr<ProgressiveDecoder> ProgressiveDecoder::Create(const BaseMesh& base, co
   state->mesh.num_base_vertices = static_cast<uint32_t>(base.lattice.size());
   state->mesh.base_triangles = std::move(mesh.triangles);
   state->mesh.positions = std::move(mesh.positions);
-  state->base_step = base.step;
-  state->base_checksum = BaseChecksum(base);
+  state->base = base;
   state->options = options;
   return ProgressiveDecoder(std::move(state));
 }
@@ -200,10 +211,11 @@ StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level) {
     const auto end = mesh.positions.begin() + mesh.num_base_vertices;
     return TriangleMesh{std::vector<Vec3f>(mesh.positions.begin(), end), mesh.base_triangles};
   }
-  LACERTA_ASSIGN_OR_RETURN(Topology topology, BuildTopology(mesh.num_base_vertices, mesh.base_triangles));
+  LACERTA_ASSIGN_OR_RETURN(Topology topology, BuildTopology(mesh.num_base_vertices, mesh.base_triangles, mesh.tags));
   for (int i = 0; i < level; ++i) topology = Refine(topology);
   const auto end = mesh.positions.begin() + topology.num_vertices;
-  return TriangleMesh{std::vector<Vec3f>(mesh.positions.begin(), end), std::move(topology.triangles)};
+  return TriangleMesh{std::vector<Vec3f>(mesh.positions.begin(), end),
+                      WithStillTriangles(std::move(topology.triangles), mesh.base_triangles, mesh.tags)};
 }
 
 }  // namespace lacerta

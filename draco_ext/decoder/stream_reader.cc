@@ -42,6 +42,16 @@ class Cursor {
     return 0;
   }
 
+  // The next bytes; none where there are not so many.
+  Span<const uint8_t> Take(size_t size) {
+    if (bytes_.size() - position_ < size) {
+      at_end_ = true;
+      return {};
+    }
+    position_ += size;
+    return bytes_.Subspan(position_ - size).First(size);
+  }
+
   bool at_end() const { return at_end_; }        // a read went past the end
   bool malformed() const { return malformed_; }  // a varint exceeds 32 bits
   size_t position() const { return position_; }
@@ -99,12 +109,18 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   std::memcpy(&header.base_step, &step_bits, sizeof(step_bits));
   header.base_checksum = cursor.Word32();
   for (int level = 1; level <= num_levels; ++level) header.steps.push_back(ReadSteps(cursor));
+  const uint32_t tags_size = cursor.Varint();
+  if (!cursor.at_end() && tags_size > MaxTagBytes(header.num_base_vertices, header.num_base_triangles)) {
+    return InvalidData("the refinement header is damaged (" + std::to_string(tags_size) + " bytes of tags)");
+  }
+  const Span<const uint8_t> tags = cursor.Take(tags_size);
   const size_t checked_size = cursor.position();
   const uint16_t checksum = cursor.Word16();
   if (cursor.at_end()) return Result();
   Crc32 crc;
   crc.Add(bytes.First(checked_size));
   if (crc.low16() != checksum) return InvalidData("the refinement header is damaged (checksum mismatch)");
+  header.tags.assign(tags.begin(), tags.end());
   if (cursor.malformed()) return InvalidData("a count in the refinement header exceeds 32 bits");
   if (!(header.base_step > 0) || !std::isnormal(header.base_step)) {
     return InvalidData("the base step in the refinement header is not a positive number");

@@ -13,14 +13,17 @@ void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const Le
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     const int32_t q1 = quantized.tangential[size_t{2} * e], q2 = quantized.tangential[size_t{2} * e + 1];
     const int32_t qn = quantized.normal[e];
-    if (q1 == 0 && q2 == 0 && qn == 0) continue;  // most of a fine level: no frame needed
+    if (coarse.is_copy(e) || (q1 == 0 && q2 == 0 && qn == 0)) continue;  // most of a fine level: no frame needed
     const Vec3f detail = {Dequantize(q1, steps.tangential_step, steps.tangential_bias),
                           Dequantize(q2, steps.tangential_step, steps.tangential_bias),
                           Dequantize(qn, steps.normal_step, steps.normal_bias)};
     details[e] = LocalFrameAt(coarse, *positions, midpoints, e).ToWorld(detail);
   }
   positions->reserve(positions->size() + midpoints.size());
-  for (uint32_t e = 0; e < coarse.num_edges(); ++e) positions->push_back(midpoints[e] + details[e]);
+  for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
+    const uint32_t source = coarse.is_copy(e) ? coarse.master[e] : e;
+    positions->push_back(midpoints[source] + details[source]);
+  }
 }
 
 }  // namespace lacerta

@@ -12,7 +12,7 @@
 namespace lacerta {
 
 // Appends the positions of the new vertices of one level, one per edge of `coarse`: butterfly prediction plus the
-// dequantized detail in the local frame of the edge's midpoint.
+// dequantized detail in the local frame of the edge's midpoint. A copy (Topology::is_copy) gets the position of its master.
 //   coarse     level i
 //   table      stencils of the base mesh or of `coarse`: subdivision makes no new extraordinary vertices
 //   quantized  shapes as in QuantizedLevel; steps: its quantization

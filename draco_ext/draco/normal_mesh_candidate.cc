@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/base_tags.h"
 #include "encoder/paper_mode.h"
 #include "encoder/quantizer.h"
 #include "encoder/step_law.h"
@@ -64,18 +65,21 @@ StatusOr<CodedStream> NormalMeshCandidate::Code(double lambda, double descent_la
   CodedStream stream;
   LACERTA_ASSIGN_OR_RETURN(stream.base, RecodeBaseMesh(base_, coded.base));
   const Span<const Topology> topologies = Span<const Topology>(target_.topologies.data(), coded.levels.size());
-  LACERTA_ASSIGN_OR_RETURN(RefinementBytes refinement, WriteRefinement(coded.base, topologies, coded.steps, coded.levels));
+  LACERTA_ASSIGN_OR_RETURN(RefinementBytes refinement, WriteRefinement(coded.base, topologies, coded.steps, coded.levels, normal_mesh_.mesh.tags));
   stream.part_sizes = {stream.base.size()};
   stream.part_sizes.insert(stream.part_sizes.end(), refinement.part_sizes.begin(), refinement.part_sizes.end());
   stream.refinement = std::move(refinement.bytes);
-  stream.decoded = {normal_mesh_.mesh.base_triangles, num_base_vertices(), target_.num_levels(), Synthesize(target_, coded)};
+  stream.decoded = {normal_mesh_.mesh.base_triangles, num_base_vertices(), target_.num_levels(), Synthesize(target_, coded),
+                    normal_mesh_.mesh.tags};
   stream.plane_distortion = PlaneDistortion(target_, stream.decoded.positions);
-  stream.triangles = target_.topologies.back().triangles;
+  stream.triangles = FinestTriangles();
   return stream;
 }
 
-TriangleMesh NormalMeshCandidate::RemeshedSurface() const {
-  return {target_.points, target_.topologies.back().triangles};
+std::vector<Triangle> NormalMeshCandidate::FinestTriangles() const {
+  return WithStillTriangles(target_.topologies.back().triangles, normal_mesh_.mesh.base_triangles, normal_mesh_.mesh.tags);
 }
+
+TriangleMesh NormalMeshCandidate::RemeshedSurface() const { return {target_.points, FinestTriangles()}; }
 
 }  // namespace lacerta

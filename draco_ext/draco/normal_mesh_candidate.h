@@ -22,7 +22,7 @@ struct CodedStream {
   Bytes refinement;
   std::vector<size_t> part_sizes;    // of the base section, then as in RefinementBytes
   SemiRegularMesh decoded;
-  std::vector<Triangle> triangles;   // of the finest level
+  std::vector<Triangle> triangles;   // of the finest level, as MeshAtLevel orders them
   double plane_distortion = 0;       // PlaneDistortion: about the squared distance to the unquantized remesh
 
   size_t size() const { return base.size() + refinement.size(); }
@@ -50,6 +50,7 @@ class NormalMeshCandidate {
  private:
   NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);
   StatusOr<CodedSurface> CodeSurface(double lambda, double descent_lambda, EncodeMode mode) const;
+  std::vector<Triangle> FinestTriangles() const;  // in the order of MeshAtLevel
 
   CodedBase base_;  // at a nominal step: fixes the order
   NormalMesh normal_mesh_;

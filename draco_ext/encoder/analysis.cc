@@ -36,7 +36,7 @@ LevelCoefficients AnalyzeLevel(const Topology& coarse, const std::vector<Vec3f>&
   level.detail.reserve(coarse.num_edges());
   double length = 0.0;
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-    level.detail.push_back(frames[e].ToLocal(new_positions[e] - predicted[e]));
+    level.detail.push_back(coarse.is_copy(e) ? Vec3f() : frames[e].ToLocal(new_positions[e] - predicted[e]));
     length += Norm(coarse_positions[coarse.edges[e][1]] - coarse_positions[coarse.edges[e][0]]);
   }
   if (coarse.num_edges() > 0) level.mean_edge_length = length / coarse.num_edges();
@@ -46,7 +46,7 @@ LevelCoefficients AnalyzeLevel(const Topology& coarse, const std::vector<Vec3f>&
 }  // namespace
 
 StatusOr<std::vector<LevelCoefficients>> Analyze(const SemiRegularMesh& mesh) {
-  LACERTA_ASSIGN_OR_RETURN(Topology topology, BuildTopology(mesh.num_base_vertices, mesh.base_triangles));
+  LACERTA_ASSIGN_OR_RETURN(Topology topology, BuildTopology(mesh.num_base_vertices, mesh.base_triangles, mesh.tags));
   LACERTA_RETURN_IF_ERROR(CheckShape(mesh, topology));
   std::vector<LevelCoefficients> levels;
   for (int level = 1; level <= mesh.num_levels; ++level) {

@@ -15,7 +15,7 @@ namespace lacerta {
 
 // Details of one level, one per edge of the level below, in the order of its edges.
 struct LevelCoefficients {
-  std::vector<Vec3f> detail;      // #E x (tangent1, tangent2, normal), model units
+  std::vector<Vec3f> detail;      // #E x (tangent1, tangent2, normal), model units; zero at copies
   double mean_edge_length = 0.0;  // of the edges that were split, model units
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/base_tags.h"
 #include "common/coefficient_coding.h"
 #include "common/local_frame.h"
 #include "decoder/synthesis.h"
@@ -18,23 +19,27 @@ Vec3f LatticePoint(const BaseMesh& base, uint32_t v) {
   return Vec3f{static_cast<float>(q[0]), static_cast<float>(q[1]), static_cast<float>(q[2])} * base.step;
 }
 
-// How a vertex moves the level that it is looked at on: itself with weight 1 and the midpoints of the next level.
+// How a vertex moves the level that it is looked at on: itself and its twins with weight 1, and the midpoints of the next level.
 class Reach {
  public:
   Reach(const SurfaceTarget& target, int level)
-      : spread_(level < target.num_levels() ? &target.spreads[level] : nullptr),
+      : next_twin_(target.next_twin),
+        spread_(level < target.num_levels() ? &target.spreads[level] : nullptr),
         first_midpoint_(target.topologies[level].num_vertices) {}
 
   template <typename Visitor>
   void Visit(uint32_t v, const Visitor& visit) const {
-    visit(v, 1.0f);
-    if (spread_ == nullptr) return;
-    for (uint32_t k = spread_->first[v]; k < spread_->first[v + 1]; ++k) {
-      visit(first_midpoint_ + spread_->edges[k], spread_->weights[k]);
+    for (uint32_t twin = v; twin != kNone; twin = next_twin_.empty() ? kNone : next_twin_[twin]) {
+      visit(twin, 1.0f);
+      if (spread_ == nullptr) continue;
+      for (uint32_t k = spread_->first[twin]; k < spread_->first[twin + 1]; ++k) {
+        visit(first_midpoint_ + spread_->edges[k], spread_->weights[k]);
+      }
     }
   }
 
  private:
+  const std::vector<uint32_t>& next_twin_;
   const StencilSpread* spread_;
   uint32_t first_midpoint_;
 };
@@ -134,7 +139,12 @@ int32_t BestValue(const LocalModel::Parabola& parabola, int32_t current, float s
 
 void DescendBase(const SurfaceTarget& target, const std::vector<Vec3f>& positions, BaseMesh* base) {
   LocalModel model(target, positions, 0);
+  const std::vector<uint32_t>& next_twin = target.next_twin;
+  std::vector<bool> follows(base->lattice.size(), false);  // another vertex, which was moved already
+  const BaseMesh before = *base;
   for (uint32_t v = 0; v < base->lattice.size(); ++v) {
+    if (!next_twin.empty() && next_twin[v] != kNone) follows[next_twin[v]] = true;
+    if (follows[v]) continue;
     for (int axis = 0; axis < 3; ++axis) {
       Vec3f direction;
       direction[axis] = 1;
@@ -142,10 +152,12 @@ void DescendBase(const SurfaceTarget& target, const std::vector<Vec3f>& position
       // A far jump says that the model does not hold there.
       const int32_t steps = std::clamp(moves, -1, 1);
       if (steps == 0) continue;
-      base->lattice[v][axis] += steps;
+      for (uint32_t u = v; u != kNone; u = next_twin.empty() ? kNone : next_twin[u]) base->lattice[u][axis] += steps;
       model.Move(v, direction * (static_cast<float>(steps) * base->step));
     }
   }
+  // Decoders take vertices at one point for joined ones: none may come together that were apart.
+  if (!next_twin.empty() && FirstAtSamePoint(before.lattice) != FirstAtSamePoint(base->lattice)) *base = before;
 }
 
 // Chooses the details of level `level` (1 .. L) and advances the state of the entropy coder over them.
@@ -251,6 +263,7 @@ CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& bas
     quantized.normal.resize(coarse.num_edges());
     quantized.tangential.resize(size_t{2} * coarse.num_edges());
     for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
+      if (coarse.is_copy(e)) continue;
       const uint32_t v = coarse.num_vertices + e;
       const Vec3f detail = target.points[v] - predicted[e];
       const Vec3f local = frames[e].ToLocal(detail);

@@ -27,6 +27,7 @@ std::vector<double> DetailScales(const SurfaceTarget& target) {
     const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
     double sum = 0;
     for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
+      if (coarse.is_copy(e)) continue;
       const double normal = Dot(target.points[coarse.num_vertices + e] - predicted[e], frames[e].normal);
       sum += normal * normal;
     }

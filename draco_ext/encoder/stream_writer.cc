@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "common/base_tags_coding.h"
 #include "common/coefficient_coding.h"
 #include "common/crc32.h"
 #include "common/stream_layout.h"
@@ -38,7 +39,7 @@ void PutSteps(const LevelSteps& s, Bytes* bytes) {
     bytes->push_back(static_cast<uint8_t>(normal_bias | tangential_bias << 4));
 }
 
-Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps) {
+Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps, const Bytes& tags) {
   Bytes bytes(kRefinementMagic.begin(), kRefinementMagic.end());
   bytes.push_back(kRefinementVersion);
   bytes.push_back(static_cast<uint8_t>(steps.size() | 1 << 4));  // one quality layer
@@ -49,10 +50,32 @@ Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps) {
   PutWord32(step_bits, &bytes);
   PutWord32(BaseChecksum(base), &bytes);
   for (const LevelSteps& s : steps) PutSteps(s, &bytes);
+  PutVarint(tags.size(), &bytes);
+  bytes.insert(bytes.end(), tags.begin(), tags.end());
   Crc32 crc;
   crc.Add(bytes);
   PutWord16(crc.low16(), &bytes);
   return bytes;
+}
+
+// Whether decoders, who see the topology `read`, know the same edges, curves and copies as the encoder.
+bool SameCurves(const Topology& read, const Topology& given) {
+  if (read.edges != given.edges || read.on_curve != given.on_curve || read.role != given.role) return false;
+  for (uint32_t e = 0; e < read.num_edges(); ++e) {
+    if (read.is_copy(e) != given.is_copy(e) || (read.is_copy(e) && read.master[e] != given.master[e])) return false;
+  }
+  return true;
+}
+
+StatusOr<Bytes> WriteTags(const BaseMesh& base, BaseTags tags, const Topology& topology) {
+  tags = NormalizedTags(std::move(tags));
+  RangeEncoder encoder;
+  LACERTA_ASSIGN_OR_RETURN(const Topology read,
+                           tags.empty() ? BuildTopology(static_cast<uint32_t>(base.lattice.size()), base.triangles)
+                                        : CodeBaseTags(base.lattice, base.triangles, &tags, &encoder));
+  if (SameCurves(read, topology)) return tags.empty() ? Bytes() : encoder.Finish();
+  return InvalidArgument("the tags are not those of the topologies, or borders are joined on the base lattice that should not be, or "
+                         "the other way round; take a smaller step");
 }
 
 void PutSegment(int level, const Bytes& payload, Bytes* bytes) {
@@ -76,6 +99,10 @@ Status CheckSet(const char* name, int level, const std::vector<int32_t>& set, si
 }
 
 Status CheckLevel(int level, const Topology& t, const LevelSteps& steps, const QuantizedLevel& q) {
+  for (uint32_t e = 0; e < t.num_edges() && e < q.normal.size() && 2 * size_t{e} + 1 < q.tangential.size(); ++e) {
+    if (!t.is_copy(e) || (q.normal[e] == 0 && q.tangential[2 * size_t{e}] == 0 && q.tangential[2 * size_t{e} + 1] == 0)) continue;
+    return InvalidArgument("edge " + std::to_string(e) + " of level " + std::to_string(level) + " is a copy and has coefficients");
+  }
   LACERTA_RETURN_IF_ERROR(CheckSet("normal", level, q.normal, t.num_edges(), steps.normal_step, steps.normal_bias));
   return CheckSet("tangential", level, q.tangential, size_t{2} * t.num_edges(), steps.tangential_step,
                   steps.tangential_bias);
@@ -83,14 +110,14 @@ Status CheckLevel(int level, const Topology& t, const LevelSteps& steps, const Q
 
 }  // namespace
 
-StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_levels) {
+StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_levels, const BaseTags& tags) {
   if (num_levels < 0 || num_levels > kMaxLevels) {
     return InvalidArgument(std::to_string(num_levels) + " levels; 0 to " + std::to_string(kMaxLevels) +
                            " are possible");
   }
   std::vector<Topology> topologies;
   if (num_levels == 0) return topologies;
-  LACERTA_ASSIGN_OR_RETURN(Topology t, BuildTopology(static_cast<uint32_t>(base.lattice.size()), base.triangles));
+  LACERTA_ASSIGN_OR_RETURN(Topology t, BuildTopology(static_cast<uint32_t>(base.lattice.size()), base.triangles, tags));
   const auto widest = std::max_element(t.valence.begin(), t.valence.end());
   if (widest != t.valence.end() && *widest > kMaxBaseValence) {
     return InvalidData("base vertex " + std::to_string(widest - t.valence.begin()) + " has " + std::to_string(*widest) +
@@ -107,14 +134,15 @@ StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_le
 
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topology> topologies,
                                           const std::vector<LevelSteps>& steps,
-                                          const std::vector<QuantizedLevel>& levels) {
+                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags) {
   if (topologies.size() != levels.size() || steps.size() != levels.size()) {
     return InvalidArgument("numbers of topologies, steps and levels differ");
   }
   if (!(base.step > 0) || !std::isnormal(base.step)) return InvalidArgument("the base step must be a positive number");
   RefinementBytes result;
   if (levels.empty()) return result;
-  result.bytes = WriteHeader(base, steps);
+  LACERTA_ASSIGN_OR_RETURN(const Bytes coded_tags, WriteTags(base, tags, topologies[0]));
+  result.bytes = WriteHeader(base, steps, coded_tags);
   size_t part_begin = 0;
   CodingState state;
   for (size_t i = 0; i < levels.size(); ++i) {
@@ -131,10 +159,10 @@ StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topol
 }
 
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, const std::vector<LevelSteps>& steps,
-                                          const std::vector<QuantizedLevel>& levels) {
+                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags) {
   LACERTA_ASSIGN_OR_RETURN(const std::vector<Topology> topologies,
-                           BuildTopologies(base, static_cast<int>(levels.size())));
-  return WriteRefinement(base, topologies, steps, levels);
+                           BuildTopologies(base, static_cast<int>(levels.size()), tags));
+  return WriteRefinement(base, topologies, steps, levels, tags);
 }
 
 }  // namespace lacerta

@@ -22,22 +22,25 @@ struct RefinementBytes {
 // Connectivity of the levels whose edges carry coefficients: levels 0 .. num_levels - 1. Fails with kInvalidData where
 // the base cannot be refined (BuildTopology; more than 1,024 edges at a vertex) and with kInvalidArgument where
 // num_levels is not 0..12 or the finest level would have 2^31 edges or more.
-StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_levels);
+StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_levels, const BaseTags& tags = {});
 
 // Writes a refinement.
-//   topologies  of BuildTopologies(base, L)
+//   topologies  of BuildTopologies(base, L, tags)
 //   steps       L: quantization of levels 1..L, steps as RoundStep returns them
 //   levels      L: coefficients; levels[i] has one entry per edge of topologies[i], magnitudes up to kMaxMagnitude, and
 //   is
-//               zero where its step is zero
-// No level, no bytes. Fails with kInvalidArgument where an argument breaks these rules.
+//               zero where its step is zero and at copies (Topology::is_copy)
+//   tags        decoders take joined vertices from the lattice (FirstAtSamePoint in common/base_tags.h): that must join the
+//               same borders as tags.joined
+// No level, no bytes. Fails with kInvalidArgument where an argument breaks these rules, and with kInvalidData where no triangle
+// is to be split.
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topology> topologies,
                                           const std::vector<LevelSteps>& steps,
-                                          const std::vector<QuantizedLevel>& levels);
+                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags = {});
 
 // The same, making the topologies itself.
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, const std::vector<LevelSteps>& steps,
-                                          const std::vector<QuantizedLevel>& levels);
+                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags = {});
 
 }  // namespace lacerta
 

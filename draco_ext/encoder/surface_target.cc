@@ -1,5 +1,7 @@
 #include "encoder/surface_target.h"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace lacerta {
@@ -27,6 +29,27 @@ std::vector<float> LumpMasses(const Topology& coarse, const std::vector<float>& 
     for (const uint32_t v : coarse.edges[e]) masses[v] += 0.5f * fine[coarse.num_vertices + e];
   }
   return masses;
+}
+
+// SurfaceTarget::next_twin. joined: BaseTags::joined; topologies: of levels 0 .. L.
+std::vector<uint32_t> ChainTwins(const std::vector<uint32_t>& joined, const std::vector<Topology>& topologies) {
+  if (joined.empty()) return {};
+  std::vector<uint32_t> next(topologies.back().num_vertices, kNone), last(next.size());
+  std::iota(last.begin(), last.end(), 0u);
+  const auto append = [&](uint32_t first, uint32_t v) {
+    next[last[first]] = v;
+    last[first] = v;
+  };
+  for (uint32_t v = 0; v < joined.size(); ++v) {
+    if (joined[v] != v) append(joined[v], v);
+  }
+  for (size_t level = 0; level + 1 < topologies.size(); ++level) {
+    const Topology& t = topologies[level];
+    for (uint32_t e = 0; e < t.num_edges(); ++e) {
+      if (t.is_copy(e)) append(t.num_vertices + t.master[e], t.num_vertices + e);
+    }
+  }
+  return next;
 }
 
 }  // namespace
@@ -63,8 +86,9 @@ SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
   for (size_t level = topologies.size() - 1; level > 0; --level) {
     masses[level - 1] = LumpMasses(topologies[level - 1], masses[level]);
   }
-  return {std::move(topologies), std::move(stencils), std::move(spreads),  mesh.mesh.positions,
-          mesh.surface_normals,  std::move(masses),   mesh.piercing};
+  std::vector<uint32_t> next_twin = ChainTwins(mesh.mesh.tags.joined, topologies);
+  return {std::move(topologies), std::move(stencils), std::move(spreads), mesh.mesh.positions,
+          mesh.surface_normals,  std::move(masses),   mesh.piercing,      std::move(next_twin)};
 }
 
 }  // namespace lacerta

@@ -33,8 +33,12 @@ struct SurfaceTarget {
   std::vector<StencilSpread> spreads;         // of levels 0 .. L-1
   std::vector<Vec3f> points;                  // #V of the finest level: points of the input
   std::vector<Vec3f> normals;                 // #V, unit
-  std::vector<std::vector<float>> masses;     // per level 0 .. L: share of the area at each vertex; each sums to 1
+  // Per level 0 .. L: share of the area at each vertex; each sums to 1. Still triangles have no part in it.
+  std::vector<std::vector<float>> masses;
   std::vector<PiercingKind> piercing;         // #V - #V0
+  // #V of the finest level, or empty where no borders are joined: the next vertex that always lies where this one does, or kNone.
+  // Chains begin with the vertex whose lattice point or coefficients count.
+  std::vector<uint32_t> next_twin;
 
   int num_levels() const { return static_cast<int>(spreads.size()); }
 };

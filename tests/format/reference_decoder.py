@@ -56,9 +56,12 @@ def read_header(reader, base):
         normal, tangential = reader.unsigned(2), reader.unsigned(2)
         biases = reader.unsigned(1) if normal or tangential else 0
         levels.append({"normal": (normal, biases & 15), "tangential": (tangential, biases >> 4)})
+    length = reader.varint()
+    assert length <= 8 + 3 * (len(base["lattice"]) + 4 * len(base["triangles"])) // 2
+    tags = reader.take(length)
     end = reader.at
     assert reader.unsigned(2) == zlib.crc32(reader.data[:end]) & 0xFFFF
-    return levels
+    return levels, tags
 
 
 def read_segment(reader, level):
@@ -73,14 +76,20 @@ def read_segment(reader, level):
 class Level:
     """Tables of one level: edges as [first end, second end, first face, second face or None]."""
 
-    def __init__(self, num_vertices, triangles, edges, face_edges):
+    def __init__(self, num_vertices, triangles, edges, face_edges, on_curve, corner, master):
         self.num_vertices, self.triangles, self.edges, self.face_edges = num_vertices, triangles, edges, face_edges
+        self.on_curve, self.corner, self.master = on_curve, corner, master  # per edge, per vertex, per edge (None: no copy)
         self.at_vertex = [[] for _ in range(num_vertices)]
-        self.border = [False] * num_vertices
-        for e, (a, b, _, second) in enumerate(edges):
+        for e, (a, b, _, _) in enumerate(edges):
             for v in (a, b):
                 self.at_vertex[v].append(e)
-                self.border[v] = self.border[v] or second is None
+
+    def curves(self, v):
+        return [e for e in self.at_vertex[v] if self.on_curve[e]]
+
+    def passes(self, v):
+        """Whether one curve passes through v."""
+        return len(self.curves(v)) == 2 and not self.corner[v]
 
     def faces(self, e):
         return [f for f in self.edges[e][2:] if f is not None]
@@ -98,6 +107,7 @@ class Level:
 
 
 def base_level(num_vertices, triangles):
+    """Without creases, corners and joined borders."""
     edges, face_edges, known = [], [], {}
     for f, t in enumerate(triangles):
         row = []
@@ -111,7 +121,8 @@ def base_level(num_vertices, triangles):
                 edges.append([a, b, f, None])
             row.append(e)
         face_edges.append(row)
-    return Level(num_vertices, triangles, edges, face_edges)
+    border = [second is None for _, _, _, second in edges]
+    return Level(num_vertices, triangles, edges, face_edges, border, [False] * num_vertices, [None] * len(edges))
 
 
 def refine(c):
@@ -133,7 +144,10 @@ def refine(c):
             face_edges.append([inner[k], half(e[k1], t[k]), half(e[k2], t[k])])
         triangles.append(mid)
         face_edges.append(inner)
-    return Level(V + E, triangles, edges, face_edges)
+    inner = [None] * (3 * len(c.triangles))
+    on_curve = [c.on_curve[e // 2] for e in range(2 * E)] + [False] * len(inner)
+    master = [None if c.master[e] is None else 2 * c.master[e] + end for e in range(E) for end in (0, 1)] + inner
+    return Level(V + E, triangles, edges, face_edges, on_curve, c.corner + [False] * E, master)
 
 
 # --- Range coder, bit models ---
@@ -186,11 +200,52 @@ class Model:
         self.count = min(self.count + 1, 160)
 
 
+# --- Base tags ---
+
+def tagged_level(base, payload):
+    """The level of the split triangles, and the tags."""
+    lattice, triangles = base["lattice"], base["triangles"]
+    tags = {"still": [], "crease": [], "corner": [], "joined": []}
+    if not payload:
+        return base_level(len(lattice), triangles), tags
+    decoder = RangeDecoder(payload)
+    if decoder.even():
+        models, last = [Model(), Model()], 0
+        for _ in triangles:
+            last = int(decoder.bit(models[last]))
+            tags["still"].append(last)
+    level = base_level(len(lattice), [t for f, t in enumerate(triangles) if not any(tags["still"][f:f + 1])])
+    assert level.triangles
+    if decoder.even():
+        models = [Model() for _ in range(6)]
+        for e, (a, b, _, second) in enumerate(level.edges):
+            if second is not None:
+                fewer, more = sorted(min(len(level.curves(v)), 2) for v in (a, b))
+                level.on_curve[e] = decoder.bit(models[more * (more + 1) // 2 + fewer])
+            tags["crease"].append(int(level.on_curve[e] and second is not None))
+    if decoder.even():
+        model = Model()
+        level.corner = [len(level.curves(v)) == 2 and decoder.bit(model) for v in range(len(lattice))]
+        tags["corner"] = [int(x) for x in level.corner]
+    if decoder.even():
+        joined = tags["joined"] = [lattice.index(point) for point in lattice]
+        masters = {}
+        for e, edge in enumerate(level.edges):
+            ends = joined[edge[0]], joined[edge[1]]
+            if edge[3] is None and ends[0] != ends[1]:
+                m = masters.setdefault(frozenset(ends), e)
+                if m != e:
+                    level.master[e] = m
+                    if joined[level.edges[m][0]] != ends[0]:
+                        edge[0], edge[1] = edge[1], edge[0]
+    return level, tags
+
+
 # --- Binarization ---
 
 class SetModels:
     def __init__(self, initial):
-        self.nonzero = [[Model(initial) for _ in range(3)] for _ in range(14)]
+        self.nonzero = [[Model(initial) for _ in range(6)] for _ in range(14)]
         self.unexpected_sign = [Model() for _ in range(8)]
         self.larger = [[Model() for _ in range(14)] for _ in range(14)]
         self.longer = [Model() for _ in range(19)]
@@ -250,10 +305,13 @@ def decode_set(level, parents, decode_edge):
     values = []
     sums, counts = [0] * level.num_vertices, [0] * level.num_vertices
     for e, (a, b, _, _) in enumerate(level.edges):
+        if level.master[e] is not None:
+            values.append(0)
+            continue
         total, number, signed = sums[a] + sums[b], counts[a] + counts[b], 0
         for f in level.faces(e):
             for x in level.face_edges[f]:
-                if x < e:
+                if x < e and level.master[x] is None:
                     total += abs(values[x])
                     number += 1
                     signed += values[x]
@@ -283,13 +341,14 @@ class CoefficientDecoder:
         normal, tangential = [0] * len(level.edges), [0] * 2 * len(level.edges)
 
         def normal_edge(e, activity, sign_class, expect_negative):
-            normal[e] = decode_coefficient(decoder, self.models[0], activity, 0, sign_class, expect_negative)
+            normal[e] = decode_coefficient(decoder, self.models[0], activity, 3 * level.on_curve[e], sign_class, expect_negative)
             return normal[e]
 
         def tangential_edge(e, activity, _sign_class, _expect_negative):
-            n = abs(normal[e])
-            first = decode_coefficient(decoder, self.models[1], activity, 0 if n == 0 else 1 if n < 3 else 2, 0, False)
-            companion = 2 if first else 1 if n else 0
+            n, curve = abs(normal[e]), 3 * level.on_curve[e]
+            companion = curve + (0 if n == 0 else 1 if n < 3 else 2)
+            first = decode_coefficient(decoder, self.models[1], activity, companion, 0, False)
+            companion = curve + (2 if first else 1 if n else 0)
             second = decode_coefficient(decoder, self.models[2], activity, companion, 0, False)
             tangential[2 * e:2 * e + 2] = first, second
             return abs(first) + abs(second)
@@ -335,15 +394,20 @@ def dequantize(q, bits, bias):
 
 
 def stencil(level, e):
-    a, b, _, second = level.edges[e]
-    if second is None:
-        result = []
-        for v in (a, b):
-            other = next(x for x in level.at_vertex[v] if x != e and level.edges[x][3] is None)
-            result += [(v, 9 / 16), (level.other_end(other, v), -1 / 16)]
-        return result
-    odd = [v for v in (a, b) if len(level.at_vertex[v]) != 6]
-    if level.border[a] or level.border[b] or not odd:
+    if level.master[e] is not None:
+        e = level.master[e]
+    a, b, _, _ = level.edges[e]
+    if level.on_curve[e]:
+        def beyond(v):
+            return level.other_end(next(x for x in level.curves(v) if x != e), v)
+        if level.passes(a) and level.passes(b):
+            return [(a, 9 / 16), (beyond(a), -1 / 16), (b, 9 / 16), (beyond(b), -1 / 16)]
+        if level.passes(a) or level.passes(b):
+            corner, other = (b, a) if level.passes(a) else (a, b)
+            return [(corner, 3 / 8), (other, 3 / 4), (beyond(other), -1 / 8)]
+        return [(a, 1 / 2), (b, 1 / 2)]
+    odd = [v for v in (a, b) if len(level.at_vertex[v]) != 6 and len(level.at_vertex[v]) <= 256]
+    if level.curves(a) or level.curves(b) or not odd:
         result = [(a, 1 / 2), (b, 1 / 2)]
         for f in level.faces(e):
             k = level.face_edges[f].index(e)
@@ -351,9 +415,8 @@ def stencil(level, e):
             result.append((c, 1 / 8))
             for wing_corner in ((k + 1) % 3, (k + 2) % 3):
                 wing = level.face_edges[f][wing_corner]
-                neighbor = level.across(f, wing)
-                if neighbor is not None:
-                    result.append((level.opposite(neighbor, wing), -1 / 16))
+                if not level.on_curve[wing]:
+                    result.append((level.opposite(level.across(f, wing), wing), -1 / 16))
                 else:
                     p = level.triangles[f][wing_corner]
                     r = b if p == a else a
@@ -362,7 +425,9 @@ def stencil(level, e):
     result = []
     for v in odd:
         K = len(level.at_vertex[v])
-        if K == 3:
+        if K == 2:
+            weights = [3 / 8, -1 / 8]
+        elif K == 3:
             weights = [5 / 12, -1 / 12, -1 / 12]
         elif K == 4:
             weights = [3 / 8, 0, -1 / 8, 0]
@@ -387,6 +452,9 @@ def synthesize(level, sets, normal, tangential, positions):
         for k in range(3):
             normals[edges[k]] = add(normals[edges[k]], middle, corner[(k + 1) % 3], corner[(k + 2) % 3])
     for e, (a, b, _, _) in enumerate(level.edges):
+        if level.master[e] is not None:
+            positions.append(positions[level.num_vertices + level.master[e]])
+            continue
         n = unit(normals[e])
         if n == [0.0, 0.0, 0.0]:
             n = [0.0, 0.0, 1.0]
@@ -408,14 +476,15 @@ def decode(base, data):
     reader = Reader(data)
     positions = [[value * base["step"] for value in point] for point in base["lattice"]]
     coefficients = []
-    level = base_level(len(base["lattice"]), base["triangles"])
     coefficient_decoder = CoefficientDecoder()
-    for number, sets in enumerate(read_header(reader, base), 1):
+    steps, payload = read_header(reader, base)
+    level, tags = tagged_level(base, payload)
+    for number, sets in enumerate(steps, 1):
         normal, tangential = coefficient_decoder.decode(level, sets, read_segment(reader, number))
         synthesize(level, sets, normal, tangential, positions)
         coefficients.append({"normal": normal, "tangential": tangential})
         level = refine(level)
-    return coefficients, positions
+    return tags, coefficients, positions
 
 
 def main(paths):
@@ -423,7 +492,8 @@ def main(paths):
         with open(path, encoding="utf-8") as file:
             golden = json.load(file)
         with open(path[:-len("json")] + "lac", "rb") as file:
-            coefficients, positions = decode(golden["base"], file.read())
+            tags, coefficients, positions = decode(golden["base"], file.read())
+        assert tags == golden["base"].get("tags", dict.fromkeys(tags, [])), path + ": tags differ"
         assert coefficients == golden["levels"], path + ": coefficients differ"
         assert len(positions) == len(golden["positions"]), path + ": numbers of positions differ"
         size = max(abs(x) for p in golden["positions"] for x in p)

@@ -1,8 +1,11 @@
 // The whole refinement decoder on bytes with sound checksums, cut into pieces. Checksums would stop a fuzzer at the
-// door, so header and segments are put together from its bytes: steps, biases, lengths and payloads are its own choice.
+// door, so header and segments are put together from its bytes: steps, biases, tags, lengths and payloads are its own choice.
+#include "common/base_tags_coding.h"
 #include "common/crc32.h"
 #include "common/stream_layout.h"
+#include "decoder/range_decoder.h"
 #include "draco_ext/encoder/test_streams.h"
+#include "encoder/range_encoder.h"
 #include "fuzz/fuzz_input.h"
 #include "lacerta/decoder.h"
 
@@ -33,6 +36,9 @@ Bytes MakeStream(const BaseMesh& base, lacerta::fuzz::FuzzInput* input) {
     Put(tangential, 2, &bytes);
     if (normal != 0 || tangential != 0) Put(input->Byte(), 1, &bytes);
   }
+  const Span<const uint8_t> tags = input->Take(input->Byte() & 0x1f);
+  Put(static_cast<uint32_t>(tags.size()), 1, &bytes);
+  bytes.insert(bytes.end(), tags.begin(), tags.end());
   lacerta::Crc32 crc;
   crc.Add(bytes);
   Put(crc.low16(), 2, &bytes);
@@ -45,14 +51,29 @@ Bytes MakeStream(const BaseMesh& base, lacerta::fuzz::FuzzInput* input) {
   return bytes;
 }
 
+// Tags that were read are written and read again as they are.
+void CheckTags(const lacerta::BaseTags& tags, const BaseMesh& base) {
+  if (tags.empty()) return;
+  lacerta::BaseTags written = tags, again;
+  lacerta::RangeEncoder encoder;
+  FUZZ_CHECK(CodeBaseTags(base.lattice, base.triangles, &written, &encoder).ok());
+  const Bytes payload = encoder.Finish();
+  FUZZ_CHECK(payload.size() <= lacerta::MaxTagBytes(base.lattice.size(), base.triangles.size()));
+  lacerta::RangeDecoder decoder(payload);
+  FUZZ_CHECK(CodeBaseTags(base.lattice, base.triangles, &again, &decoder).ok());
+  FUZZ_CHECK(again.still == tags.still && again.crease == tags.crease && again.corner == tags.corner && again.joined == tags.joined);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   lacerta::fuzz::FuzzInput input(data, size);
   const int choice = input.Byte();
-  const BaseMesh base = choice % 3 == 0   ? lacerta::testing::Octahedron()
-                        : choice % 3 == 1 ? lacerta::testing::Torus(5, 4)
-                                          : lacerta::testing::Square();
+  const BaseMesh base = choice % 5 == 0   ? lacerta::testing::Octahedron()
+                        : choice % 5 == 1 ? lacerta::testing::Torus(5, 4)
+                        : choice % 5 == 2 ? lacerta::testing::Square()
+                        : choice % 5 == 3 ? lacerta::testing::OctahedronBesideStillSheets().base
+                                          : lacerta::testing::ThreeSheets().base;
   lacerta::RefinementOptions options;
   options.limits = {3000, 6000};
   const size_t cut = 1 + input.Byte();
@@ -70,6 +91,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   FUZZ_CHECK(whole.level == decoder.level());
   FUZZ_CHECK(whole.mesh.positions == decoder.mesh().positions);
   FUZZ_CHECK(whole.refinement.ok() == decoder.refinement().ok());
-  FUZZ_CHECK(MeshAtLevel(whole.mesh, whole.level).ok());
+  const auto mesh = MeshAtLevel(whole.mesh, whole.level);
+  FUZZ_CHECK(mesh.ok() && mesh.value().triangles.size() <= options.limits.max_triangles);
+  CheckTags(whole.mesh.tags, base);
   return 0;
 }

@@ -37,8 +37,8 @@ struct BaseMesh {
 // coordinate is not finite, further than a quarter of a step away from the lattice, or |lattice| reaches 2^24.
 StatusOr<BaseMesh> BaseMeshFromPositions(const TriangleMesh& mesh, float step);
 
-// The triangle mesh of one level (0 = base) of a semi-regular mesh. Fails with kInvalidArgument where it has no such
-// level and with kInvalidData where the base is not manifold.
+// The triangle mesh of one level (0 = base) of a semi-regular mesh; above the base, the still triangles come last. Fails with
+// kInvalidArgument where it has no such level and with kInvalidData where the base is not manifold or its tags do not fit it.
 StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level);
 
 // What the header of a refinement tells before anything is decoded.

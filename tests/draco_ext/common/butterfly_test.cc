@@ -117,6 +117,84 @@ TEST(VisitStencilTest, BorderEdgeUsesTheBorderCurveAlone) {
             (std::map<uint32_t, float>{{5, -0.0625f}, {0, 0.5625f}, {1, 0.5625f}, {2, -0.0625f}}));
 }
 
+// Grid of 4 x 4 cells whose row r = 2 is a crease; vertex (c, r) is 5 r + c.
+Topology CreasedGrid(const std::vector<uint32_t>& corners) {
+  const TriangleMesh grid = shapes::Grid(4);
+  BaseTags tags;
+  for (const auto& [a, b] : shapes::TopologyOf(grid).edges) tags.crease.push_back(a / 5 == 2 && b / 5 == 2);
+  tags.corner.assign(25, 0);
+  for (const uint32_t v : corners) tags.corner[v] = 1;
+  return BuildTopology(25, grid.triangles, tags).value();
+}
+
+TEST(VisitStencilTest, CreaseEdgeUsesTheCreaseAlone) {
+  const Topology t = CreasedGrid({});
+  EXPECT_EQ(StencilOf(t, FindEdge(t, 11, 12)), (std::map<uint32_t, float>{{10, -0.0625f}, {11, 0.5625f}, {12, 0.5625f}, {13, -0.0625f}}));
+  // It ends in the border, where three curve edges meet: a corner.
+  EXPECT_EQ(StencilOf(t, FindEdge(t, 10, 11)), (std::map<uint32_t, float>{{10, 0.375f}, {11, 0.75f}, {12, -0.125f}}));
+}
+
+TEST(VisitStencilTest, CurvesDoNotReachAroundCorners) {
+  const Topology t = CreasedGrid({0, 12, 13});
+  EXPECT_EQ(StencilOf(t, FindEdge(t, 0, 1)), (std::map<uint32_t, float>{{0, 0.375f}, {1, 0.75f}, {2, -0.125f}}));
+  EXPECT_EQ(StencilOf(t, FindEdge(t, 11, 12)), (std::map<uint32_t, float>{{10, -0.125f}, {11, 0.75f}, {12, 0.375f}}));
+  EXPECT_EQ(StencilOf(t, FindEdge(t, 12, 13)), (std::map<uint32_t, float>{{12, 0.5f}, {13, 0.5f}}));
+}
+
+TEST(VisitStencilTest, StencilsDoNotCrossACrease) {
+  const Topology t = CreasedGrid({});
+  for (uint32_t e = 0; e < t.num_edges(); ++e) {
+    const auto row = [&](uint32_t v) { return static_cast<int>(v / 5) - 2; };
+    const int side = t.on_curve[e] ? 0 : row(t.edges[e][0]) + row(t.edges[e][1]);
+    for (const auto& [v, weight] : StencilOf(t, e)) {
+      if (weight == 0) continue;
+      if (side > 0) {
+        EXPECT_GE(row(v), 0) << e;
+      }
+      if (side < 0) {
+        EXPECT_LE(row(v), 0) << e;
+      }
+    }
+  }
+  // The edge from (2, 2) up to (2, 3): what the face to the left would see across the crease is reflected.
+  const std::map<uint32_t, float> weights = StencilOf(t, FindEdge(t, 12, 17));
+  double sum = 0;
+  for (const auto& [v, weight] : weights) sum += weight;
+  EXPECT_NEAR(sum, 1.0, 1e-7);
+  EXPECT_GE(weights.size(), 6u);
+}
+
+TEST(PredictMidpointsTest, RoofsKeepTheirRidge) {
+  // Two planes that meet in a crease: every edge but those next to the border corners has its middle in its plane.
+  const Topology t = CreasedGrid({0, 4, 20, 24});
+  TriangleMesh roof = shapes::Grid(4);
+  for (Vec3f& p : roof.positions) p.z = -std::fabs(p.y - 2);
+  const std::vector<Vec3f> midpoints = PredictMidpoints(t, StencilTable(t), roof.positions);
+  int checked = 0;
+  for (const Vec3f& p : midpoints) {
+    EXPECT_NEAR(p.z, -std::fabs(p.y - 2), 0.13f);  // the border bends under the ridge
+    if (p.x > 0 && p.x < 4) {
+      EXPECT_NEAR(p.z, -std::fabs(p.y - 2), 1e-6f);
+      ++checked;
+    }
+  }
+  EXPECT_GE(checked, 40);
+}
+
+TEST(VisitStencilTest, CopiesHaveTheStencilOfTheirMaster) {
+  const std::vector<Triangle> triangles = {{{0, 1, 4}}, {{3, 2, 5}}};
+  Topology t = BuildTopology(6, triangles, {{}, {}, {}, {0, 1, 0, 1, 4, 5}}).value();
+  for (int level = 0; level <= 2; ++level, t = Refine(t)) {
+    int copies = 0;
+    for (uint32_t e = 0; e < t.num_edges(); ++e) {
+      if (!t.is_copy(e)) continue;
+      EXPECT_EQ(StencilOf(t, e), StencilOf(t, t.master[e]));
+      ++copies;
+    }
+    EXPECT_EQ(copies, 1 << level);
+  }
+}
+
 TEST(PredictMidpointsTest, SurfacesThatShareABorderPredictTheSamePointsOnIt) {
   // The same border curve, filled by a fan around one vertex and, turned over, by a triangle strip.
   const TriangleMesh fan = shapes::Fan(6);

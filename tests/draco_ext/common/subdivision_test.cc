@@ -206,7 +206,6 @@ TEST(RefineTest, AgreesWithBuildTopologyUpToEdgeNumbers) {
     ASSERT_TRUE(built.ok()) << built.status().message();
     EXPECT_EQ(built.value().valence, refined.valence);
     EXPECT_EQ(built.value().role, refined.role);
-    EXPECT_EQ(built.value().on_curve, refined.on_curve);
     ASSERT_EQ(built.value().num_edges(), refined.num_edges());
     for (uint32_t f = 0; f < refined.num_faces(); ++f) {
       for (int k = 0; k < 3; ++k) {
@@ -214,8 +213,87 @@ TEST(RefineTest, AgreesWithBuildTopologyUpToEdgeNumbers) {
         EXPECT_EQ(std::minmax(refined.edges[a][0], refined.edges[a][1]),
                   std::minmax(built.value().edges[b][0], built.value().edges[b][1]));
         EXPECT_EQ(FaceAcross(refined, f, a), FaceAcross(built.value(), f, b));
+        EXPECT_EQ(refined.on_curve[a], built.value().on_curve[b]);
       }
     }
+  }
+}
+
+TEST(BuildTopologyTest, NamesTagsOfTheWrongShape) {
+  const std::vector<Triangle> triangles = shapes::Tetrahedron().triangles;
+  const auto message = [&](const BaseTags& tags) { return BuildTopology(4, triangles, tags).status().message(); };
+  EXPECT_THAT(message({{0, 0, 1}, {}, {}, {}}), HasSubstr("still triangles are not as many as the triangles"));
+  EXPECT_THAT(message({{}, {1, 0, 0, 0, 0}, {}, {}}), HasSubstr("creases are not as many as the edges"));
+  EXPECT_THAT(message({{0, 0, 0, 1}, {}, {0, 0, 1}, {}}), HasSubstr("corners are not as many as the vertices"));
+  EXPECT_THAT(message({{}, {}, {}, {0, 1, 2, 3, 4}}), HasSubstr("joined vertices are not as many as the vertices"));
+  EXPECT_TRUE(BuildTopology(4, triangles, {{0, 0, 0, 1}, {1, 0, 0, 0, 0, 0}, {0, 0, 1, 0}, {0, 1, 2, 3}}).ok());
+}
+
+TEST(BuildTopologyTest, StillTrianglesNeedIndicesInRangeAndNothingElse) {
+  const auto build = [](const Triangle& still) { return BuildTopology(3, {{{0, 1, 2}}, still, still}, {{0, 1, 1}, {}, {}, {}}); };
+  EXPECT_TRUE(build({{0, 1, 2}}).ok());
+  EXPECT_TRUE(build({{0, 0, 0}}).ok());
+  EXPECT_EQ(build({{2, 1, 0}}).value().num_faces(), 1u);
+  EXPECT_THAT(build({{0, 1, 3}}).status().message(), HasSubstr("triangle 1 refers to vertex 3 of 3"));
+}
+
+TEST(RefineTest, HandsCurvesDown) {
+  // The middle row of a grid is a crease; vertex (c, r) is 5 r + c. One corner of the border is kept, one point of the crease too.
+  const TriangleMesh grid = shapes::Grid(4);
+  BaseTags tags;
+  for (const auto& [a, b] : shapes::TopologyOf(grid).edges) tags.crease.push_back(a / 5 == 2 && b / 5 == 2);
+  tags.corner.assign(25, 0);
+  tags.corner[0] = tags.corner[12] = tags.corner[6] = 1;  // 6 is on no curve: no corner
+  Topology t = BuildTopology(25, grid.triangles, tags).value();
+  const std::set<uint32_t> corners = {0, 10, 12, 14};
+  for (int level = 0; level <= 3; ++level) {
+    SCOPED_TRACE(level);
+    std::vector<int> num_curves(t.num_vertices, 0);
+    size_t on_curve = 0;
+    for (uint32_t e = 0; e < t.num_edges(); ++e) {
+      on_curve += t.on_curve[e];
+      for (const uint32_t v : t.edges[e]) num_curves[v] += t.on_curve[e];
+      if (t.is_border(e)) {
+        EXPECT_EQ(t.on_curve[e], 1);
+      }
+    }
+    EXPECT_EQ(on_curve, size_t{16 + 4} << level);
+    for (uint32_t v = 0; v < t.num_vertices; ++v) {
+      const CurveRole expected = corners.count(v) != 0 ? CurveRole::kCorner : num_curves[v] > 0 ? CurveRole::kCurve : CurveRole::kSmooth;
+      EXPECT_EQ(t.role[v], expected) << v;
+      if (expected == CurveRole::kCurve) {
+        EXPECT_EQ(num_curves[v], 2) << v;
+      }
+    }
+    t = Refine(t);
+  }
+}
+
+TEST(RefineTest, CopiesFollowTheirMastersHalfByHalf) {
+  // Three sheets at an edge, vertices 2 s and 2 s + 1 of sheet s there; the last sheet runs the other way.
+  const std::vector<Triangle> triangles = {{{0, 1, 6}}, {{2, 3, 7}}, {{5, 4, 8}}};
+  const std::vector<uint32_t> joined = {0, 1, 0, 1, 0, 1, 6, 7, 8};
+  Topology t = BuildTopology(9, triangles, {{}, {}, {}, joined}).value();
+  std::vector<uint32_t> place = joined;  // of every vertex: the first one at the same position
+  size_t num_copies = 2;
+  for (int level = 0; level <= 3; ++level, num_copies *= 2) {
+    SCOPED_TRACE(level);
+    ASSERT_EQ(t.master.size(), t.num_edges());
+    size_t copies = 0;
+    std::vector<uint32_t> finer_place = place;
+    for (uint32_t e = 0; e < t.num_edges(); ++e) {
+      finer_place.push_back(t.num_vertices + (t.is_copy(e) ? t.master[e] : e));
+      if (!t.is_copy(e)) continue;
+      ++copies;
+      const uint32_t m = t.master[e];
+      EXPECT_LT(m, e);
+      EXPECT_FALSE(t.is_copy(m));
+      EXPECT_TRUE(t.is_border(e) && t.is_border(m));
+      for (const int end : {0, 1}) EXPECT_EQ(place[t.edges[e][end]], place[t.edges[m][end]]);
+    }
+    EXPECT_EQ(copies, num_copies);
+    place = finer_place;
+    t = Refine(t);
   }
 }
 

@@ -21,13 +21,18 @@ namespace {
 
 using ::lacerta::testing::Coefficients;
 using ::lacerta::testing::Octahedron;
+using ::lacerta::testing::OctahedronBesideStillSheets;
+using ::lacerta::testing::OctahedronWithCrease;
 using ::lacerta::testing::RandomCoefficients;
 using ::lacerta::testing::Square;
+using ::lacerta::testing::SquareWithCorners;
+using ::lacerta::testing::TaggedBase;
+using ::lacerta::testing::ThreeSheets;
 using ::lacerta::testing::Torus;
 
 struct Golden {
   const char* name;
-  BaseMesh base;
+  TaggedBase tagged;
   int num_levels;
   uint32_t seed;
   double scale;  // of the coefficients of level 1
@@ -48,17 +53,27 @@ std::string Rows(const std::vector<Row>& rows) {
   return out.str() + "]";
 }
 
-std::string List(const std::vector<int32_t>& values) {
+template <typename Value>
+std::string List(const std::vector<Value>& values) {
   std::ostringstream out;
-  for (size_t i = 0; i < values.size(); ++i) out << (i == 0 ? "[" : ",") << values[i];
+  out << "[";
+  for (size_t i = 0; i < values.size(); ++i) out << (i == 0 ? "" : ",") << static_cast<int64_t>(values[i]);
   return out.str() + "]";
 }
 
+// Nothing where there are none.
+std::string DescribeTags(const BaseTags& tags) {
+  if (tags.empty()) return "";
+  return ",\n\"tags\": {\"still\": " + List(tags.still) + ",\n\"crease\": " + List(tags.crease) + ",\n\"corner\": " + List(tags.corner) +
+         ",\n\"joined\": " + List(tags.joined) + "}";
+}
+
 std::string Describe(const Golden& golden, const Coefficients& c, const std::vector<Vec3f>& positions) {
+  const BaseMesh& base = golden.tagged.base;
   std::ostringstream out;
   out.precision(9);
-  out << "{\"base\": {\"step\": " << golden.base.step << ",\n\"lattice\": " << Rows(golden.base.lattice)
-      << ",\n\"triangles\": " << Rows(golden.base.triangles) << "},\n\"levels\": [";
+  out << "{\"base\": {\"step\": " << base.step << ",\n\"lattice\": " << Rows(base.lattice) << ",\n\"triangles\": " << Rows(base.triangles)
+      << DescribeTags(golden.tagged.tags) << "},\n\"levels\": [";
   for (size_t i = 0; i < c.levels.size(); ++i) {
     out << (i == 0 ? "" : ",") << "\n{\"normal\": " << List(c.levels[i].normal)
         << ",\n\"tangential\": " << List(c.levels[i].tangential) << "}";
@@ -85,9 +100,10 @@ class GoldenTest : public ::testing::TestWithParam<Golden> {};
 
 TEST_P(GoldenTest, DecodesAndIsWrittenAgain) {
   const Golden& golden = GetParam();
-  const Coefficients c = RandomCoefficients(golden.base, golden.num_levels, golden.seed, golden.scale);
-  const Bytes written = WriteRefinement(golden.base, c.steps, c.levels).value().bytes;
-  const RefinementResult again = DecodeRefinement(golden.base, written, {}).value();
+  const auto& [base, tags] = golden.tagged;
+  const Coefficients c = RandomCoefficients(base, golden.num_levels, golden.seed, golden.scale, tags);
+  const Bytes written = WriteRefinement(base, c.steps, c.levels, tags).value().bytes;
+  const RefinementResult again = DecodeRefinement(base, written, {}).value();
   if (std::getenv("LACERTA_REGENERATE_GOLDEN") != nullptr) {
     WriteFile(PathOf(golden, ".lac"), std::string(written.begin(), written.end()));
     WriteFile(PathOf(golden, ".json"), Describe(golden, c, again.mesh.positions));
@@ -95,20 +111,25 @@ TEST_P(GoldenTest, DecodesAndIsWrittenAgain) {
   const std::string file = ReadFile(PathOf(golden, ".lac"));
   const Bytes stored(file.begin(), file.end());
   EXPECT_EQ(stored, written) << "the writer of version 1 changed: streams in the field would not decode";
-  const RefinementResult decoded = DecodeRefinement(golden.base, stored, {}).value();
+  const RefinementResult decoded = DecodeRefinement(base, stored, {}).value();
   EXPECT_TRUE(decoded.refinement.ok()) << decoded.refinement.message();
   EXPECT_EQ(decoded.level, golden.num_levels);
   EXPECT_EQ(decoded.bytes_used, stored.size());
+  EXPECT_EQ(DescribeTags(decoded.mesh.tags), DescribeTags(tags));
   // Nine digits tell every binary32 apart.
   EXPECT_EQ(Describe(golden, c, decoded.mesh.positions), ReadFile(PathOf(golden, ".json")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Version1, GoldenTest,
-                         ::testing::Values(Golden{"octahedron_4_levels", Octahedron(), 4, 21, 6.0},
-                                           Golden{"torus_regular_3_levels", Torus(6, 5), 3, 22, 2.0},
-                                           Golden{"square_border_4_levels", Square(), 4, 23, 3.0},
-                                           Golden{"octahedron_large_coefficients", Octahedron(), 2, 24, 40000.0},
-                                           Golden{"torus_mostly_zero", Torus(8, 6), 3, 25, 0.3}),
+                         ::testing::Values(Golden{"octahedron_4_levels", {Octahedron()}, 4, 21, 6.0},
+                                           Golden{"torus_regular_3_levels", {Torus(6, 5)}, 3, 22, 2.0},
+                                           Golden{"square_border_4_levels", {Square()}, 4, 23, 3.0},
+                                           Golden{"octahedron_large_coefficients", {Octahedron()}, 2, 24, 40000.0},
+                                           Golden{"torus_mostly_zero", {Torus(8, 6)}, 3, 25, 0.3},
+                                           Golden{"octahedron_crease", OctahedronWithCrease(), 3, 26, 4.0},
+                                           Golden{"square_corners", SquareWithCorners(), 3, 27, 3.0},
+                                           Golden{"octahedron_beside_still_sheets", OctahedronBesideStillSheets(), 3, 28, 4.0},
+                                           Golden{"three_sheets_joined", ThreeSheets(), 3, 29, 3.0}),
                          [](const auto& golden) { return std::string(golden.param.name); });
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "common/crc32.h"
+#include "decoder/stream_reader.h"
 #include "draco_ext/encoder/test_streams.h"
 #include "encoder/stream_writer.h"
 #include "lacerta/decoder.h"
@@ -19,8 +20,12 @@ namespace {
 
 using ::lacerta::testing::Coefficients;
 using ::lacerta::testing::Octahedron;
+using ::lacerta::testing::OctahedronBesideStillSheets;
 using ::lacerta::testing::RandomCoefficients;
 using ::lacerta::testing::Square;
+using ::lacerta::testing::SquareWithCorners;
+using ::lacerta::testing::TaggedBases;
+using ::lacerta::testing::ThreeSheets;
 using ::lacerta::testing::Torus;
 using ::testing::HasSubstr;
 
@@ -47,8 +52,8 @@ void FixHeaderChecksum(size_t header_size, Bytes* bytes) {
 }
 
 // 3 mark, version, levels, two counts of one byte, step, checksum of the base, 2 levels of two steps and a byte,
-// checksum.
-constexpr size_t kHeaderSizeOfTwoLevels = 3 + 1 + 1 + 1 + 1 + 4 + 4 + 2 * 5 + 2;
+// length of the tags, checksum.
+constexpr size_t kHeaderSizeOfTwoLevels = 3 + 1 + 1 + 1 + 1 + 4 + 4 + 2 * 5 + 1 + 2;
 
 TEST(ProgressiveDecoderTest, EveryPrefixDecodesToItsLastCompleteLevel) {
   const BaseMesh base = Octahedron();
@@ -233,7 +238,7 @@ TEST(ProgressiveDecoderTest, TwelveLevelsInFewBytesStayWithinTheLimits) {
   Bytes bytes = {'L', 'A', 'C', 1, 0x1c, 100, 0xc8, 0x01};
   const RefinementBytes real = SmallStream(base, 1);
   bytes.insert(bytes.end(), real.bytes.begin() + 8, real.bytes.begin() + 16);  // step and checksum of the base
-  bytes.insert(bytes.end(), 12 * 4 + 2, 0);
+  bytes.insert(bytes.end(), 12 * 4 + 1 + 2, 0);  // steps, tags, checksum
   FixHeaderChecksum(bytes.size(), &bytes);
   for (uint8_t level = 1; level <= 12; ++level) {
     Crc32 crc;
@@ -261,6 +266,121 @@ TEST(ProgressiveDecoderTest, RefusesToRefineVerticesOfAbsurdValence) {
   fan.triangles.pop_back();
   fan.lattice.pop_back();
   EXPECT_TRUE(BuildTopologies(fan, 1).ok());
+}
+
+// Size of the header of a stream: that of level 1's part without its segment, which begins with its length.
+size_t HeaderSize(const Bytes& bytes) { return ReadRefinementHeader(bytes).value()->size; }
+
+TEST(TaggedStreamTest, EveryPrefixDecodesToItsLastCompleteLevel) {
+  for (const auto& [base, tags] : TaggedBases()) {
+    const Coefficients c = RandomCoefficients(base, 3, 12, 4.0, tags);
+    const RefinementBytes refinement = WriteRefinement(base, c.steps, c.levels, tags).value();
+    const RefinementResult whole = Decode(base, refinement.bytes);
+    ASSERT_EQ(whole.level, 3) << whole.refinement.message();
+    for (size_t size = 0; size < refinement.bytes.size(); ++size) {
+      const RefinementResult result = Decode(base, refinement.bytes, size);
+      ASSERT_TRUE(result.refinement.ok()) << size << ": " << result.refinement.message();
+      size_t end = 0;
+      int expected_level = 0;
+      for (const size_t part : refinement.part_sizes) expected_level += size >= (end += part);
+      ASSERT_EQ(result.level, expected_level) << size;
+      EXPECT_EQ(result.mesh.tags.empty(), size < HeaderSize(refinement.bytes)) << size;
+      ASSERT_TRUE(std::equal(result.mesh.positions.begin(), result.mesh.positions.end(), whole.mesh.positions.begin())) << size;
+      ASSERT_TRUE(MeshAtLevel(result.mesh, result.level).ok());
+    }
+  }
+}
+
+TEST(TaggedStreamTest, DamagedTagsWithASoundChecksumDecodeToSomething) {
+  int other = 0, refused = 0;
+  for (const auto& [base, tags] : TaggedBases()) {
+    const Coefficients c = RandomCoefficients(base, 2, 12, 4.0, tags);
+    const Bytes bytes = WriteRefinement(base, c.steps, c.levels, tags).value().bytes;
+    const RefinementResult whole = Decode(base, bytes);
+    const size_t header_size = HeaderSize(bytes);
+    const size_t tags_size = ReadRefinementHeader(bytes).value()->header.tags.size();
+    ASSERT_GE(tags_size, 1u);
+    for (size_t i = header_size - 2 - tags_size; i < header_size - 2; ++i) {
+      for (int change = 1; change < 256; ++change) {
+        Bytes changed = bytes;
+        changed[i] = static_cast<uint8_t>(changed[i] ^ change);
+        EXPECT_THAT(Decode(base, changed).refinement.message(), HasSubstr("checksum mismatch"));
+        FixHeaderChecksum(header_size, &changed);
+        const RefinementResult result = Decode(base, changed);
+        refused += !result.refinement.ok();
+        other += result.refinement.ok() && result.mesh.positions != whole.mesh.positions;
+        ASSERT_TRUE(MeshAtLevel(result.mesh, result.level).ok());
+      }
+    }
+  }
+  EXPECT_GE(other, 500);
+  EXPECT_GE(refused, 10);
+}
+
+TEST(TaggedStreamTest, RefusesTagsLongerThanTheBaseCanHave) {
+  const auto [base, tags] = SquareWithCorners();
+  const Coefficients c = RandomCoefficients(base, 1, 1, 4.0, tags);
+  Bytes bytes = WriteRefinement(base, c.steps, c.levels, tags).value().bytes;
+  const size_t length_at = HeaderSize(bytes) - 2 - ReadRefinementHeader(bytes).value()->header.tags.size() - 1;
+  bytes[length_at] = 26;  // 8 + 3 (4 + 4 * 2) / 2: just what may be
+  EXPECT_THAT(Decode(base, bytes).refinement.message(), ::testing::Not(HasSubstr("bytes of tags")));
+  bytes[length_at] = 27;
+  EXPECT_THAT(Decode(base, bytes).refinement.message(), HasSubstr("27 bytes of tags"));
+}
+
+TEST(TaggedStreamTest, StillTrianglesComeLastAndCountInTheLimits) {
+  const auto [base, tags] = OctahedronBesideStillSheets();
+  const Coefficients c = RandomCoefficients(base, 2, 12, 4.0, tags);
+  const Bytes bytes = WriteRefinement(base, c.steps, c.levels, tags).value().bytes;
+  const RefinementResult whole = Decode(base, bytes);
+  const TriangleMesh finest = MeshAtLevel(whole.mesh, 2).value();
+  ASSERT_EQ(finest.triangles.size(), 128u + 3u);
+  EXPECT_EQ(finest.triangles[128], (Triangle{6, 7, 8}));
+  EXPECT_EQ(finest.triangles[130], (Triangle{6, 7, 10}));
+  for (uint32_t v = 6; v < 11; ++v) EXPECT_EQ(finest.positions[v], base.ToMesh().positions[v]);
+  EXPECT_EQ(MeshAtLevel(whole.mesh, 0).value().triangles, base.triangles);
+  RefinementOptions options;
+  options.limits = {1000, 131};
+  EXPECT_EQ(Decode(base, bytes, bytes.size(), options).level, 2);
+  options.limits = {1000, 130};
+  const RefinementResult limited = Decode(base, bytes, bytes.size(), options);
+  EXPECT_EQ(limited.level, 1);
+  EXPECT_THAT(limited.refinement.message(), HasSubstr("131 triangles"));
+}
+
+TEST(TaggedStreamTest, JoinedSheetsStayTogetherOnEveryLevel) {
+  const auto [base, tags] = ThreeSheets();
+  const Coefficients c = RandomCoefficients(base, 3, 13, 6.0, tags);
+  const RefinementResult whole = Decode(base, WriteRefinement(base, c.steps, c.levels, tags).value().bytes);
+  ASSERT_EQ(whole.level, 3) << whole.refinement.message();
+  Topology t = BuildTopology(12, base.triangles, tags).value();
+  const std::vector<Vec3f>& positions = whole.mesh.positions;
+  int copies = 0, bent = 0;
+  for (int level = 0; level < 3; ++level, t = Refine(t)) {
+    for (uint32_t e = 0; e < t.num_edges(); ++e) {
+      if (!t.is_copy(e)) continue;
+      ++copies;
+      const Vec3f& p = positions[t.num_vertices + e];
+      EXPECT_EQ(p, positions[t.num_vertices + t.master[e]]);
+      bent += p.x != 0 || p.y != 0;
+    }
+  }
+  EXPECT_EQ(copies, 2 * (1 + 2 + 4));
+  EXPECT_GE(bent, 10);  // details are at work there
+}
+
+TEST(TaggedStreamTest, RefusesBasesOfStillTrianglesOnly) {
+  const BaseMesh base = Octahedron();
+  Bytes bytes = SmallStream(base, 1).bytes;
+  const size_t header_size = HeaderSize(bytes);
+  bytes[header_size - 3] = 1;                                       // a payload of one byte: zero, which is ones without end
+  bytes.insert(bytes.begin() + static_cast<ptrdiff_t>(header_size) - 2, 0);
+  FixHeaderChecksum(header_size + 1, &bytes);
+  const RefinementResult result = Decode(base, bytes);
+  EXPECT_EQ(result.refinement.code(), StatusCode::kInvalidData);
+  EXPECT_THAT(result.refinement.message(), HasSubstr("nothing to refine"));
+  EXPECT_EQ(result.level, 0);
+  EXPECT_TRUE(result.mesh.tags.empty());
 }
 
 TEST(ProgressiveDecoderTest, StopsAtMaxLevel) {

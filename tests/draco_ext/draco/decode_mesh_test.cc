@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <vector>
 
 #include "draco/zero_level.h"
 #include "draco_ext/draco/test_progressive_streams.h"
@@ -16,6 +19,7 @@ using ::lacerta::testing::MakeProgressiveStream;
 using ::lacerta::testing::Octahedron;
 using ::lacerta::testing::ProgressiveStream;
 using ::lacerta::testing::SameBits;
+using ::lacerta::testing::ThreeSheets;
 using ::lacerta::testing::Torus;
 using ::testing::HasSubstr;
 
@@ -44,6 +48,27 @@ TEST(DecodeMeshTest, DecodesBothFormsToTheSameMesh) {
     EXPECT_TRUE(SameBits(decoded.value().mesh.positions, expected.positions));
     EXPECT_EQ(decoded.value().mesh.triangles, expected.triangles);
   }
+}
+
+TEST(DecodeMeshTest, JoinedSheetsStayTogetherInBothForms) {
+  const ProgressiveStream stream = MakeProgressiveStream(ThreeSheets().base, 3, /*joined=*/true);
+  const ProgressiveStream apart = MakeProgressiveStream(ThreeSheets().base, 3);
+  // Vertices at the place of another one: two more for each of the nine on the common curve, where it is one.
+  const auto num_at_taken_places = [](const TriangleMesh& mesh) {
+    std::vector<std::array<float, 3>> points;
+    for (const Vec3f& p : mesh.positions) points.push_back({p.x, p.y, p.z});
+    std::sort(points.begin(), points.end());
+    return points.end() - std::unique(points.begin(), points.end());
+  };
+  for (const Bytes& bytes : {stream.DracoForm(), stream.CustomForm()}) {
+    const StatusOr<DecodedMesh> decoded = DecodeMesh(bytes, {});
+    ASSERT_TRUE(decoded.ok()) << decoded.status().message();
+    EXPECT_TRUE(decoded.value().refinement.ok()) << decoded.value().refinement.message();
+    EXPECT_EQ(decoded.value().mesh.triangles.size(), 6u * 64);
+    EXPECT_TRUE(SameBits(decoded.value().mesh.positions, ExpectedLevel(stream, 3).positions));
+    EXPECT_EQ(num_at_taken_places(decoded.value().mesh), 18);
+  }
+  EXPECT_LT(num_at_taken_places(DecodeMesh(apart.DracoForm(), {}).value().mesh), 12);
 }
 
 TEST(DecodeMeshTest, StopsAtMaxLevel) {

@@ -26,9 +26,9 @@ struct ProgressiveStream {
 };
 
 // The refinement of a base by the coefficients that every hand-made stream holds.
-inline RefinementBytes MakeRefinement(const BaseMesh& base, int num_levels) {
-  const Coefficients coefficients = RandomCoefficients(base, num_levels, 7);
-  return WriteRefinement(base, coefficients.steps, coefficients.levels).value();
+inline RefinementBytes MakeRefinement(const BaseMesh& base, int num_levels, const BaseTags& tags = {}) {
+  const Coefficients coefficients = RandomCoefficients(base, num_levels, 7, 6.0, tags);
+  return WriteRefinement(base, coefficients.steps, coefficients.levels, tags).value();
 }
 
 // The finest level that MakeRefinement gives.
@@ -37,10 +37,13 @@ inline TriangleMesh Refined(const BaseMesh& base, int num_levels) {
   return MeshAtLevel(DecodeRefinement(base, bytes, {}).value().mesh, num_levels).value();
 }
 
-inline ProgressiveStream MakeProgressiveStream(const BaseMesh& base, int num_levels) {
+// joined: vertices at one point are joined (BaseTags::joined).
+inline ProgressiveStream MakeProgressiveStream(const BaseMesh& base, int num_levels, bool joined = false) {
   ProgressiveStream result;
   result.base = EncodeBaseMesh(base).value();
-  RefinementBytes written = MakeRefinement(result.base.mesh, num_levels);
+  BaseTags tags;
+  if (joined) tags.joined = FirstAtSamePoint(result.base.mesh.lattice);
+  RefinementBytes written = MakeRefinement(result.base.mesh, num_levels, tags);
   result.part_sizes.push_back(result.base.stream.size());
   result.part_sizes.insert(result.part_sizes.end(), written.part_sizes.begin(), written.part_sizes.end());
   result.refinement = std::move(written.bytes);

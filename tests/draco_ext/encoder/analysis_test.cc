@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "draco_ext/encoder/tagged_meshes.h"
 #include "shapes/base_meshes.h"
 #include "shapes/open_loop_synthesis.h"
 
@@ -121,6 +122,30 @@ TEST(NormalDetailShareTest, CountsBothTolerances) {
   EXPECT_DOUBLE_EQ(NormalDetailShare({level}, {0.0, 0.0}), 2.0 / 8);
   EXPECT_DOUBLE_EQ(NormalDetailShare({level}, {10.0, 1.0}), 1.0);
   EXPECT_DOUBLE_EQ(NormalDetailShare({}), 1.0);
+}
+
+TEST(AnalyzeTest, IsInvertedBySynthesisOnTaggedBases) {
+  for (const testing::TaggedBase& tagged : testing::TaggedBases()) {
+    const SemiRegularMesh mesh = testing::Bent(tagged, 3).mesh;
+    const std::vector<LevelCoefficients> levels = Analyze(mesh).value();
+    Topology t = BuildTopology(mesh.num_base_vertices, mesh.base_triangles, mesh.tags).value();
+    std::vector<Vec3f> positions(mesh.positions.begin(), mesh.positions.begin() + mesh.num_base_vertices);
+    float largest = 0;
+    for (size_t i = 0; i < levels.size(); ++i, t = Refine(t)) {
+      std::vector<LevelCoefficients> one = {levels[i]};
+      positions = shapes::Synthesize(t, std::move(positions), one);
+      for (uint32_t e = 0; e < t.num_edges(); ++e) {
+        if (t.is_copy(e)) {
+          EXPECT_EQ(levels[i].detail[e], Vec3f());
+          positions[t.num_vertices + e] = positions[t.num_vertices + t.master[e]];
+        }
+        largest = std::max(largest, Norm(levels[i].detail[e]));
+      }
+    }
+    ASSERT_EQ(positions.size(), mesh.positions.size());
+    for (size_t v = 0; v < positions.size(); ++v) EXPECT_LT(Norm(positions[v] - mesh.positions[v]), 1e-4f);
+    EXPECT_GT(largest, 0.01f);
+  }
 }
 
 }  // namespace

@@ -14,8 +14,8 @@
 
 namespace lacerta::testing {
 
-inline Bytes RefinementOf(const CodedSurface& coded) {
-  StatusOr<RefinementBytes> written = WriteRefinement(coded.base, coded.steps, coded.levels);
+inline Bytes RefinementOf(const CodedSurface& coded, const BaseTags& tags = {}) {
+  StatusOr<RefinementBytes> written = WriteRefinement(coded.base, coded.steps, coded.levels, tags);
   EXPECT_TRUE(written.ok()) << written.status().message();
   return written.ok() ? std::move(written).value().bytes : Bytes();
 }
@@ -23,9 +23,9 @@ inline Bytes RefinementOf(const CodedSurface& coded) {
 inline double BitsOf(const CodedSurface& coded) { return 8.0 * static_cast<double>(RefinementOf(coded).size()); }
 
 // The decoder must show what the encoder thinks, to the last bit.
-inline void ExpectDecodesAsSynthesized(const SurfaceTarget& target, const CodedSurface& coded) {
+inline void ExpectDecodesAsSynthesized(const SurfaceTarget& target, const CodedSurface& coded, const BaseTags& tags = {}) {
   const std::vector<Vec3f> expected = Synthesize(target, coded);
-  const StatusOr<RefinementResult> decoded = DecodeRefinement(coded.base, RefinementOf(coded), {});
+  const StatusOr<RefinementResult> decoded = DecodeRefinement(coded.base, RefinementOf(coded, tags), {});
   ASSERT_TRUE(decoded.ok()) << decoded.status().message();
   EXPECT_TRUE(decoded.value().refinement.ok()) << decoded.value().refinement.message();
   EXPECT_EQ(decoded.value().level, target.num_levels());

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "draco_ext/encoder/coded_surfaces.h"
+#include "draco_ext/encoder/tagged_meshes.h"
 #include "draco_ext/remesh/remeshing.h"
 #include "encoder/quantizer.h"
 #include "encoder/step_law.h"
@@ -148,6 +149,31 @@ TEST(Descend, NoVertexFliesAway) {
       double farthest = 0;
       for (size_t v = 0; v < positions.size(); ++v) farthest = std::max(farthest, double{Norm(positions[v] - target.points[v])});
       EXPECT_LT(farthest, 3 * edge + 2.0 * coded.base.step);
+    }
+  }
+}
+
+TEST(Descend, TaggedBasesDecodeAsSynthesized) {
+  for (const lacerta::testing::TaggedBase& tagged : lacerta::testing::TaggedBases()) {
+    const NormalMesh mesh = lacerta::testing::Bent(tagged, 3);
+    const SurfaceTarget target = MakeSurfaceTarget(mesh);
+    constexpr double kLambda = 1e-8;
+    CodedSurface start = ClosedLoopAt(target, kLambda);
+    start.base.triangles = tagged.base.triangles;
+    if (!tagged.tags.joined.empty()) {
+      for (const size_t v : {1, 5, 9}) start.base.lattice[v][2] += 3;  // off, together
+    }
+    ExpectDecodesAsSynthesized(target, start, tagged.tags);
+    const CodedSurface after = Descend(target, start, {kLambda, 2, true});
+    ExpectDecodesAsSynthesized(target, after, tagged.tags);
+    const auto cost = [&](const CodedSurface& coded) {
+      return Distortion(target, coded) + kLambda * 8 * static_cast<double>(lacerta::testing::RefinementOf(coded, tagged.tags).size());
+    };
+    EXPECT_LT(cost(after), cost(start));
+    EXPECT_LT(std::sqrt(Distortion(target, after)), 0.01);
+    if (!tagged.tags.joined.empty()) {
+      EXPECT_EQ(FirstAtSamePoint(after.base.lattice), tagged.tags.joined);
+      EXPECT_LT(after.base.lattice[9][2], start.base.lattice[9][2]);  // back, together
     }
   }
 }

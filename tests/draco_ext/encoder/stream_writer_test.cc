@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -17,12 +18,15 @@ using ::lacerta::testing::Coefficients;
 using ::lacerta::testing::Octahedron;
 using ::lacerta::testing::RandomCoefficients;
 using ::lacerta::testing::Square;
+using ::lacerta::testing::TaggedBase;
+using ::lacerta::testing::TaggedBases;
+using ::lacerta::testing::ThreeSheets;
 using ::lacerta::testing::Torus;
 using ::testing::HasSubstr;
 
 // What a decoder of these coefficients must arrive at.
-std::vector<Vec3f> Synthesize(const BaseMesh& base, const Coefficients& c) {
-  const std::vector<Topology> topologies = BuildTopologies(base, static_cast<int>(c.levels.size())).value();
+std::vector<Vec3f> Synthesize(const BaseMesh& base, const Coefficients& c, const BaseTags& tags) {
+  const std::vector<Topology> topologies = BuildTopologies(base, static_cast<int>(c.levels.size()), tags).value();
   std::vector<Vec3f> positions = base.ToMesh().positions;
   for (size_t i = 0; i < c.levels.size(); ++i) {
     SynthesizeLevel(topologies[i], StencilTable(topologies[i]), c.steps[i], c.levels[i], &positions);
@@ -30,8 +34,8 @@ std::vector<Vec3f> Synthesize(const BaseMesh& base, const Coefficients& c) {
   return positions;
 }
 
-void ExpectRoundTrip(const BaseMesh& base, const Coefficients& c) {
-  const StatusOr<RefinementBytes> written = WriteRefinement(base, c.steps, c.levels);
+void ExpectRoundTrip(const BaseMesh& base, const Coefficients& c, const BaseTags& tags = {}) {
+  const StatusOr<RefinementBytes> written = WriteRefinement(base, c.steps, c.levels, tags);
   ASSERT_TRUE(written.ok()) << written.status().message();
   const RefinementBytes& refinement = written.value();
   EXPECT_EQ(refinement.part_sizes.size(), c.levels.size());
@@ -42,7 +46,12 @@ void ExpectRoundTrip(const BaseMesh& base, const Coefficients& c) {
   EXPECT_TRUE(decoded.value().refinement.ok()) << decoded.value().refinement.message();
   EXPECT_EQ(decoded.value().level, static_cast<int>(c.levels.size()));
   EXPECT_EQ(decoded.value().bytes_used, refinement.bytes.size());
-  EXPECT_EQ(decoded.value().mesh.positions, Synthesize(base, c));
+  const SemiRegularMesh& mesh = decoded.value().mesh;
+  EXPECT_EQ(mesh.positions, Synthesize(base, c, tags));
+  EXPECT_EQ(mesh.tags.still, tags.still);
+  EXPECT_EQ(mesh.tags.crease, tags.crease);
+  EXPECT_EQ(mesh.tags.corner, tags.corner);
+  EXPECT_EQ(mesh.tags.joined, tags.joined);
 }
 
 TEST(StreamWriterTest, RoundTripsClosedMeshes) {
@@ -56,6 +65,49 @@ TEST(StreamWriterTest, RoundTripsLargeCoefficients) {
   ExpectRoundTrip(Octahedron(), RandomCoefficients(Octahedron(), 3, 4, 30000));
 }
 
+TEST(StreamWriterTest, RoundTripsTags) {
+  for (const TaggedBase& tagged : TaggedBases()) {
+    ExpectRoundTrip(tagged.base, RandomCoefficients(tagged.base, 3, 6, 4.0, tagged.tags), tagged.tags);
+  }
+}
+
+TEST(StreamWriterTest, TagsOfNothingCostNothing) {
+  const Coefficients c = RandomCoefficients(Octahedron(), 2, 7);
+  const BaseTags nothing = {std::vector<uint8_t>(8), std::vector<uint8_t>(12), std::vector<uint8_t>(6), {0, 1, 2, 3, 4, 5}};
+  EXPECT_EQ(WriteRefinement(Octahedron(), c.steps, c.levels, nothing).value().bytes,
+            WriteRefinement(Octahedron(), c.steps, c.levels).value().bytes);
+}
+
+TEST(StreamWriterTest, RefusesTagsThatDoNotFit) {
+  const auto [base, tags] = ThreeSheets();
+  Coefficients c = RandomCoefficients(base, 1, 5, 4.0, tags);
+  const auto message = [&](const BaseMesh& b, const BaseTags& t) {
+    const StatusOr<RefinementBytes> written = WriteRefinement(b, c.steps, c.levels, t);
+    return written.ok() ? "" : written.status().message();
+  };
+  EXPECT_EQ(message(base, tags), "");
+  BaseMesh apart = base;
+  apart.lattice[4][0] += 1;
+  BaseMesh touching = base;
+  touching.lattice[2] = touching.lattice[7];  // no border edge is joined that was not
+  EXPECT_EQ(message(touching, tags), "");
+  touching.lattice[3] = touching.lattice[6];
+  EXPECT_THAT(message(touching, tags), HasSubstr("take a smaller step"));
+  EXPECT_THAT(message(apart, tags), HasSubstr("borders are joined on the base lattice"));
+  const std::vector<Topology> topologies = BuildTopologies(base, 1, tags).value();
+  EXPECT_THAT(WriteRefinement(base, topologies, c.steps, c.levels).status().message(), HasSubstr("not those of the topologies"));
+  BaseTags still = tags;
+  still.still.assign(6, 1);
+  EXPECT_THAT(message(base, still), HasSubstr("nothing to refine"));
+  BaseTags longer = tags;
+  longer.corner.assign(13, 1);
+  EXPECT_THAT(message(base, longer), HasSubstr("corners are not as many as the vertices"));
+  const Topology t = BuildTopology(12, base.triangles, tags).value();
+  const auto copy = std::find_if(t.master.begin(), t.master.end(), [](uint32_t m) { return m != kNone; });
+  c.levels[0].normal[static_cast<size_t>(copy - t.master.begin())] = 1;
+  EXPECT_THAT(message(base, tags), HasSubstr("is a copy and has coefficients"));
+}
+
 TEST(StreamWriterTest, NoLevelNoByte) {
   const RefinementBytes refinement = WriteRefinement(Octahedron(), {}, {}).value();
   EXPECT_TRUE(refinement.bytes.empty());
@@ -63,16 +115,16 @@ TEST(StreamWriterTest, NoLevelNoByte) {
 }
 
 TEST(StreamWriterTest, FixedOverheadIsSmall) {
-  // Five levels on 200 vertices: 44 bytes of header, 5 times length (1) and checksum (2), and zeros, which cost a few
+  // Five levels on 200 vertices: 45 bytes of header, 5 times length (1) and checksum (2), and zeros, which cost a few
   // bits.
   const BaseMesh base = Torus(10, 20);
   Coefficients c = RandomCoefficients(base, 5, 1, 0.0);
   c.steps[1].tangential_step = c.steps[0].tangential_step;
   const size_t size = WriteRefinement(base, c.steps, c.levels).value().bytes.size();
-  EXPECT_GE(size, 44u + 15u);
-  EXPECT_LE(size, 44u + 15u + 5 * 12u);
+  EXPECT_GE(size, 45u + 15u);
+  EXPECT_LE(size, 45u + 15u + 5 * 12u);
   for (LevelSteps& steps : c.steps) steps = {};
-  EXPECT_EQ(WriteRefinement(base, c.steps, c.levels).value().bytes.size(), 44u - 5u + 15u);
+  EXPECT_EQ(WriteRefinement(base, c.steps, c.levels).value().bytes.size(), 45u - 5u + 15u);
 }
 
 TEST(StreamWriterTest, RefusesWhatAStreamCannotHold) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "draco_ext/encoder/tagged_meshes.h"
 #include "draco_ext/remesh/remeshing.h"
 
 namespace lacerta {
@@ -75,6 +76,31 @@ TEST(SurfaceTarget, TakesPointsAsTheyAre) {
   const SurfaceTarget target = MakeSurfaceTarget(mesh);
   for (size_t v = 0; v < target.points.size(); ++v) {
     EXPECT_EQ(target.points[v], mesh.mesh.positions[v]);
+  }
+}
+
+TEST(SurfaceTarget, TwinsAreTheVerticesThatLieTogether) {
+  const NormalMesh mesh = lacerta::testing::Bent(lacerta::testing::ThreeSheets(), 3);
+  const SurfaceTarget target = MakeSurfaceTarget(mesh);
+  ASSERT_EQ(target.next_twin.size(), target.points.size());
+  int twins = 0;
+  for (size_t v = 0; v < target.points.size(); ++v) {
+    const uint32_t next = target.next_twin[v];
+    if (next == kNone) continue;
+    ++twins;
+    EXPECT_GT(next, v);
+    EXPECT_EQ(target.points[next], target.points[v]);
+  }
+  EXPECT_EQ(twins, 2 * (2 + 1 + 2 + 4));  // two for each vertex on the common curve
+  EXPECT_TRUE(MakeSurfaceTarget(lacerta::testing::Bent(lacerta::testing::SquareWithCorners(), 2)).next_twin.empty());
+}
+
+TEST(SurfaceTarget, StillTrianglesHaveNoMass) {
+  const SurfaceTarget target = MakeSurfaceTarget(lacerta::testing::Bent(lacerta::testing::OctahedronBesideStillSheets(), 2));
+  for (const std::vector<float>& masses : target.masses) {
+    EXPECT_NEAR(std::accumulate(masses.begin(), masses.end(), 0.0), 1, 1e-5);
+    for (size_t v = 6; v < 11; ++v) EXPECT_EQ(masses[v], 0);
+    for (size_t v = 0; v < 6; ++v) EXPECT_GT(masses[v], 0);
   }
 }
 

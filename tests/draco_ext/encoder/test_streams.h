@@ -2,12 +2,14 @@
 #ifndef LACERTA_TESTS_DRACO_EXT_ENCODER_TEST_STREAMS_H_
 #define LACERTA_TESTS_DRACO_EXT_ENCODER_TEST_STREAMS_H_
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
 #include <utility>
 #include <vector>
 
+#include "common/base_tags.h"
 #include "common/coefficient_sets.h"
 #include "common/subdivision.h"
 #include "lacerta/decoder.h"
@@ -43,16 +45,66 @@ inline BaseMesh Square() {
   return {0.5f, {{{0, 0, 0}}, {{2, 0, 0}}, {{2, 2, 0}}, {{0, 2, 0}}}, {{{0, 1, 2}}, {{0, 2, 3}}}};
 }
 
+// A base mesh with what it says beyond its triangles.
+struct TaggedBase {
+  BaseMesh base;
+  BaseTags tags = {};
+};
+
+// An octahedron whose belt is a crease, with a corner in it.
+inline TaggedBase OctahedronWithCrease() {
+  TaggedBase result{Octahedron()};
+  const Topology t = BuildTopology(6, result.base.triangles).value();
+  for (const auto& [a, b] : t.edges) result.tags.crease.push_back(a < 4 && b < 4);
+  result.tags.corner = {0, 0, 1, 0, 0, 0};
+  return result;
+}
+
+// The square, its corners kept.
+inline TaggedBase SquareWithCorners() { return {Square(), {{}, {}, {1, 1, 1, 1}, {}}}; }
+
+// An octahedron beside three triangles at one edge, which stand still: what cannot be refined need not be manifold.
+inline TaggedBase OctahedronBesideStillSheets() {
+  TaggedBase result{Octahedron()};
+  BaseMesh& base = result.base;
+  base.lattice.insert(base.lattice.end(), {{{200, 0, 0}}, {{200, 0, 64}}, {{264, 0, 0}}, {{200, 64, 0}}, {{200, -64, 9}}});
+  base.triangles.insert(base.triangles.begin() + 3, {{{6, 7, 8}}, {{6, 7, 9}}});
+  base.triangles.push_back({{6, 7, 10}});
+  result.tags.still.assign(base.triangles.size(), 0);
+  for (const size_t f : {size_t{3}, size_t{4}, base.triangles.size() - 1}) result.tags.still[f] = 1;
+  return result;
+}
+
+// Three squares that meet at one edge, cut apart there; the last one runs along it the other way.
+inline TaggedBase ThreeSheets() {
+  TaggedBase result{{1.0f / 32, {}, {}}};
+  const std::array<std::array<int32_t, 2>, 3> ways = {{{{64, 3}}, {{-32, 60}}, {{-35, -55}}}};
+  for (uint32_t sheet = 0; sheet < 3; ++sheet) {
+    const auto [x, y] = ways[sheet];
+    result.base.lattice.insert(result.base.lattice.end(), {{{0, 0, 0}}, {{0, 0, 64}}, {{x, y, 64}}, {{x, y, 0}}});
+    const uint32_t a = 4 * sheet;
+    const std::vector<Triangle> faces = {{{a, a + 1, a + 2}}, {{a, a + 2, a + 3}}};
+    for (const auto& [p, q, r] : faces) result.base.triangles.push_back(sheet == 2 ? Triangle{p, r, q} : Triangle{p, q, r});
+  }
+  result.tags.joined = FirstAtSamePoint(result.base.lattice);
+  return result;
+}
+
+inline std::vector<TaggedBase> TaggedBases() {
+  return {OctahedronWithCrease(), SquareWithCorners(), OctahedronBesideStillSheets(), ThreeSheets()};
+}
+
 struct Coefficients {
   std::vector<LevelSteps> steps;
   std::vector<QuantizedLevel> levels;
 };
 
 // Two-sided geometric coefficients whose scale falls from level to level; the tangential set of level 2 is not coded.
-inline Coefficients RandomCoefficients(const BaseMesh& base, int num_levels, uint32_t seed, double scale = 6.0) {
+inline Coefficients RandomCoefficients(const BaseMesh& base, int num_levels, uint32_t seed, double scale = 6.0,
+                                       const BaseTags& tags = {}) {
   std::mt19937 random(seed);
   Coefficients result;
-  Topology t = BuildTopology(static_cast<uint32_t>(base.lattice.size()), base.triangles).value();
+  Topology t = BuildTopology(static_cast<uint32_t>(base.lattice.size()), base.triangles, tags).value();
   for (int level = 1; level <= num_levels; ++level, scale /= 2) {
     const LevelSteps steps = {RoundStep(0.01f / static_cast<float>(level)), level == 2 ? 0.0f : RoundStep(0.02f), 3,
                               static_cast<uint8_t>(level == 2 ? 0 : 5)};
@@ -65,8 +117,8 @@ inline Coefficients RandomCoefficients(const BaseMesh& base, int num_levels, uin
       return (random() & 1) != 0 ? magnitude : -magnitude;
     };
     for (uint32_t e = 0; e < t.num_edges(); ++e) {
-      q.normal.push_back(draw(scale));
-      for (int k = 0; k < 2; ++k) q.tangential.push_back(level == 2 ? 0 : draw(scale / 6));
+      q.normal.push_back(t.is_copy(e) ? 0 : draw(scale));
+      for (int k = 0; k < 2; ++k) q.tangential.push_back(level == 2 || t.is_copy(e) ? 0 : draw(scale / 6));
     }
     result.steps.push_back(steps);
     result.levels.push_back(std::move(q));
