@@ -26,7 +26,6 @@ inline NormalMesh Bent(const TaggedBase& tagged, int num_levels) {
     mesh.positions.insert(mesh.positions.end(), midpoints.begin(), midpoints.end());
   }
   for (Vec3f& p : mesh.positions) p = shapes::Bumpy(p);
-  result.base_points.assign(mesh.positions.begin(), mesh.positions.begin() + mesh.num_base_vertices);
   result.surface_normals.assign(mesh.positions.size(), Vec3f());
   for (const Triangle& tri : t.triangles) {
     const Vec3f& a = mesh.positions[tri[0]];
