@@ -12,18 +12,10 @@
 #include "lacerta/surface_distance.h"
 #include "remesh/decimate.h"
 #include "remesh/input_surface.h"
+#include "remesh/surface_parts.h"
 
 namespace lacerta {
 namespace {
-
-// The topology of a mesh that the remesher of this version can take, or why it cannot.
-StatusOr<Topology> RemeshableTopology(const TriangleMesh& mesh) {
-  constexpr size_t kFewestTriangles = 500;
-  if (mesh.triangles.size() < kFewestTriangles) return Unsupported("too few triangles to be worth remeshing");
-  StatusOr<Topology> topology = BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles);
-  if (!topology.ok()) return Unsupported("not an oriented manifold: " + topology.status().message());
-  return topology;
-}
 
 // Measured error of every level that `stream` decodes to.
 Status ReportLevels(const SurfaceDistanceMeter& meter, const CodedStream& stream, EncodeReport* report) {
@@ -102,12 +94,14 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
   const auto progress = [&](double share, const char* stage) {
     if (options.progress) options.progress(share, stage);
   };
-  LACERTA_ASSIGN_OR_RETURN(const Topology topology, RemeshableTopology(mesh));
-  progress(0.0, "simplifying");
-  const CollapseHistory history = Decimate(mesh, topology, DecimateOptions());
-  const InputSurface surface(mesh, topology);
-  LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen,
-                           CodeAtTarget(surface, history, meter, target, options.mode, options.progress));
+  progress(0.0, "looking at the surface");
+  const SurfaceParts parts = SplitSurface(mesh);
+  if (parts.refined.triangles.empty()) return Unsupported("no component has triangles enough to be worth remeshing");
+  progress(0.02, "simplifying");
+  const CollapseHistory history = Decimate(parts.refined, parts.topology, DecimateOptions());
+  const InputSurface surface(parts.refined, parts.topology);
+  LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen, CodeAtTarget({surface, history, parts.source_vertex, parts.still}, meter,
+                                                                   target, options.mode, options.progress));
   progress(0.95, "comparing with Draco");
   LACERTA_ASSIGN_OR_RETURN(std::optional<ZeroLevelStream> simpler,
                            SimplerIfBetter(mesh, history, meter, target, chosen.measured));

@@ -1,6 +1,8 @@
 #include "draco/normal_mesh_candidate.h"
 
 #include <algorithm>
+#include <iterator>
+#include <unordered_map>
 #include <utility>
 
 #include "common/base_tags.h"
@@ -19,11 +21,23 @@ namespace {
 // Step of the base lattice while the order of the base is found, as a share of the diagonal.
 constexpr double kNominalStep = 5e-4;
 
-TriangleMesh BaseOf(const BaseDomain& domain, const TriangleMesh& input) {
-  TriangleMesh base;
-  for (uint32_t v = 0; v < domain.num_vertices(); ++v) base.positions.push_back(input.positions[domain.input_vertex(v)]);
-  base.triangles = domain.triangles();
-  return base;
+TriangleMesh Together(TriangleMesh a, const TriangleMesh& b) {
+  const auto offset = static_cast<uint32_t>(a.positions.size());
+  a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
+  for (const Triangle& t : b.triangles) a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  return a;
+}
+
+// For each base vertex the first one that is a copy of the same vertex; empty where there are no copies.
+std::vector<uint32_t> JoinedVertices(const BaseDomain& domain, const std::vector<uint32_t>& source_vertex) {
+  if (source_vertex.empty()) return {};
+  std::vector<uint32_t> joined(domain.num_vertices());
+  std::unordered_map<uint32_t, uint32_t> first;
+  for (uint32_t v = 0; v < joined.size(); ++v) {
+    const uint32_t on_input = domain.input_vertex(v);
+    joined[v] = on_input == kNone ? v : first.emplace(source_vertex[on_input], v).first->second;
+  }
+  return JoinsAnything(joined) ? joined : std::vector<uint32_t>();
 }
 
 }  // namespace
@@ -34,19 +48,32 @@ NormalMeshCandidate::NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh)
       target_(MakeSurfaceTarget(normal_mesh_)),
       detail_scales_(DetailScales(target_)) {}
 
-StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const InputSurface& surface, const CollapseHistory& history,
-                                                          uint32_t num_base_vertices, int num_levels) {
-  const TriangleMesh& input = surface.mesh();
-  const auto num_vertices = static_cast<uint32_t>(input.positions.size());
-  const uint32_t time = std::min(history.num_collapses(), num_vertices - std::min(num_vertices, num_base_vertices));
-  BaseDomain domain(history, time);
-  const auto nominal_step = static_cast<float>(kNominalStep * BoundingBoxDiagonal(input));
-  LACERTA_ASSIGN_OR_RETURN(CodedBase base, EncodeBaseMesh(RoundToLattice(BaseOf(domain, input), nominal_step)));
-  domain.Reorder(base.vertex_map, base.mesh.triangles);
+StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels) {
+  const TriangleMesh& mesh = input.surface.mesh();
+  const auto num_vertices = static_cast<uint32_t>(mesh.positions.size());
+  const uint32_t time = std::min(input.history.num_collapses(), num_vertices - std::min(num_vertices, num_base_vertices));
+  BaseDomain domain(input.history, time);
+  const uint32_t num_refined = domain.num_vertices();
+  const TriangleMesh nominal = Together({domain.PositionsOn(mesh), domain.triangles()}, input.still);
+  const auto nominal_step = static_cast<float>(kNominalStep * BoundingBoxDiagonal(nominal));
+  LACERTA_ASSIGN_OR_RETURN(CodedBase base, EncodeBaseMesh(RoundToLattice(nominal, nominal_step)));
+
+  // From here on in the order in which decoders get the base.
+  const auto is_still = [&](const Triangle& t) { return base.vertex_map[t[0]] >= num_refined; };
+  std::vector<Triangle> split;
+  std::copy_if(base.mesh.triangles.begin(), base.mesh.triangles.end(), std::back_inserter(split), [&](const Triangle& t) { return !is_still(t); });
+  domain.Reorder(base.vertex_map, split);
   PiercingOptions options;
   options.num_levels = num_levels;
-  NormalMesh remesh = Pierce(surface, domain, BaseOf(domain, input).positions, options);
-  FitToInput(surface, SurfaceFitOptions(), &remesh);
+  std::vector<Vec3f> positions;
+  for (const uint32_t v : base.vertex_map) positions.push_back(nominal.positions[v]);
+  NormalMesh remesh = Pierce(input.surface, domain, positions, options);
+  remesh.mesh.base_triangles = base.mesh.triangles;
+  remesh.mesh.tags.joined = JoinedVertices(domain, input.source_vertex);
+  if (!input.still.triangles.empty()) {
+    for (const Triangle& t : base.mesh.triangles) remesh.mesh.tags.still.push_back(is_still(t));
+  }
+  FitToInput(input.surface, SurfaceFitOptions(), &remesh);
   return NormalMeshCandidate(std::move(base), std::move(remesh));
 }
 

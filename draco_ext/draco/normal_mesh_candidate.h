@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "draco/base_mesh_codec.h"
+#include "draco/refinable_surface.h"
 #include "encoder/coefficient_descent.h"
 #include "encoder/surface_target.h"
 #include "lacerta/codec.h"
-#include "remesh/collapse_history.h"
-#include "remesh/input_surface.h"
 
 namespace lacerta {
 
@@ -31,10 +30,9 @@ struct CodedStream {
 
 class NormalMeshCandidate {
  public:
-  // The base mesh is the one that `history` has at `num_base_vertices` vertices, or its coarsest if that is larger.
-  // num_levels: above the base. Fails where Draco cannot carry the base.
-  static StatusOr<NormalMeshCandidate> Create(const InputSurface& surface, const CollapseHistory& history,
-                                              uint32_t num_base_vertices, int num_levels);
+  // The base mesh is the one that the history has at `num_base_vertices` vertices, or its coarsest if that is larger, with the
+  // still part beside it. num_levels: above the base. Fails where Draco cannot carry the base.
+  static StatusOr<NormalMeshCandidate> Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels);
 
   // Codes at a slope of the rate-distortion curve: lambda in squared model units per bit, > 0. A larger one gives fewer bytes.
   StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const { return Code(lambda, lambda, mode); }

@@ -53,10 +53,9 @@ struct Rung {
 
 class Ladder {
  public:
-  Ladder(const InputSurface& surface, const CollapseHistory& history, const SurfaceDistanceMeter& meter,
-         const ResolvedTarget& target, EncodeMode mode)
-      : surface_(surface), history_(history), meter_(meter), target_(target), mode_(mode) {
-    num_input_ = static_cast<double>(surface.mesh().positions.size());
+  Ladder(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode)
+      : surface_(surface), meter_(meter), target_(target), mode_(mode) {
+    num_input_ = static_cast<double>(surface.surface.mesh().positions.size());
     constexpr double kLargestBase = 0.5;  // of the input's vertices
     last_ = RungOfSize(std::max(kFirstRung, kLargestBase * num_input_));
   }
@@ -110,7 +109,7 @@ class Ladder {
     constexpr double kMostVertices = 6.0;  // ...and gets one level more, up to so many times the input's vertices
     for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
       LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate,
-                               NormalMeshCandidate::Create(surface_, history_, RungSize(number), levels));
+                               NormalMeshCandidate::Create(surface_, RungSize(number), levels));
       rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(candidate));
       constexpr uint64_t kRoughSamples = 30'000;
       const TriangleMesh remesh = rung->candidate->RemeshedSurface();
@@ -138,8 +137,7 @@ class Ladder {
     return numbers;
   }
 
-  const InputSurface& surface_;
-  const CollapseHistory& history_;
+  const RefinableSurface& surface_;
   const SurfaceDistanceMeter& meter_;
   const ResolvedTarget& target_;
   const EncodeMode mode_;
@@ -179,10 +177,9 @@ StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_
   return InvalidArgument("unknown kind of target");
 }
 
-StatusOr<ChosenStream> CodeAtTarget(const InputSurface& surface, const CollapseHistory& history,
-                                    const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
+StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
                                     const std::function<void(double, const char*)>& progress) {
-  Ladder ladder(surface, history, meter, target, mode);
+  Ladder ladder(surface, meter, target, mode);
   LACERTA_ASSIGN_OR_RETURN(const std::vector<Rung*> rungs, ladder.FindBest(progress));
   if (progress) progress(0.8, "meeting the target");
   // Scores are estimates: two candidates at a time are taken to the target until one meets it, and the better of them is kept.

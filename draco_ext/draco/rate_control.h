@@ -24,8 +24,7 @@ struct ChosenStream {
 // Codes the surface at the target: fewest bytes at a PSNR, highest PSNR at a number of bytes. Where no base size reaches the
 // target the nearest stream is returned, and says so.
 // progress: as in EncodeOptions, may be empty.
-StatusOr<ChosenStream> CodeAtTarget(const InputSurface& surface, const CollapseHistory& history,
-                                    const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
+StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
                                     const std::function<void(double, const char*)>& progress);
 
 }  // namespace lacerta

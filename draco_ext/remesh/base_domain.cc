@@ -73,13 +73,21 @@ void BaseDomain::Reorder(const std::vector<uint32_t>& vertex_map, const std::vec
     history_face.push_back(history_face_[old]);
     rotation.push_back(static_cast<uint8_t>((rotation_[old] + shift) % 3));
   }
-  std::vector<uint32_t> input_vertex(vertex_map.size());
-  for (uint32_t v = 0; v < vertex_map.size(); ++v) input_vertex[v] = input_vertex_[vertex_map[v]];
+  std::vector<uint32_t> input_vertex(vertex_map.size(), kNone);
+  for (uint32_t v = 0; v < vertex_map.size(); ++v) {
+    if (vertex_map[v] < input_vertex_.size()) input_vertex[v] = input_vertex_[vertex_map[v]];
+  }
   triangles_ = triangles;
   input_vertex_ = std::move(input_vertex);
   history_face_ = std::move(history_face);
   rotation_ = std::move(rotation);
   BuildTables();
+}
+
+std::vector<Vec3f> BaseDomain::PositionsOn(const TriangleMesh& input) const {
+  std::vector<Vec3f> positions;
+  for (const uint32_t v : input_vertex_) positions.push_back(v == kNone ? Vec3f() : input.positions[v]);
+  return positions;
 }
 
 DomainPoint BaseDomain::FromInput(const DomainPoint& on_input) const {

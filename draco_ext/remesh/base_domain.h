@@ -23,14 +23,17 @@ class BaseDomain {
 
   uint32_t num_vertices() const { return static_cast<uint32_t>(input_vertex_.size()); }
   const std::vector<Triangle>& triangles() const { return triangles_; }
-  // Input vertex at which a base vertex stands.
+  // Input vertex at which a base vertex stands; kNone for those that Reorder has put in.
   uint32_t input_vertex(uint32_t v) const { return input_vertex_[v]; }
   // With creases and corners.
   const Topology& topology() const { return topology_; }
+  // Positions of the base vertices on the input; the origin for those that Reorder has put in.
+  std::vector<Vec3f> PositionsOn(const TriangleMesh& input) const;
   const BaseTags& tags() const { return tags_; }
 
   // Renumbers vertices and faces: vertex_map[v] is the present number of the vertex that will be v, and `triangles` (in new
-  // numbers) gives the new order and rotation of the faces.
+  // numbers) gives the new order and rotation of the faces. Numbers from num_vertices() on stand for vertices that are not of the
+  // domain: they become isolated ones.
   void Reorder(const std::vector<uint32_t>& vertex_map, const std::vector<Triangle>& triangles);
 
   // Point of the domain (face: base face) of a point on a face of the input, and back.

@@ -116,6 +116,15 @@ std::vector<double> Solve(const NormalEquations& equations, size_t num_vertices,
   return solution;
 }
 
+// Base vertices where a cut is to stay closed: 1 for those with another one at the same place. Empty where there is no cut.
+std::vector<uint8_t> CopiedVertices(const BaseTags& tags) {
+  std::vector<uint8_t> copied(tags.joined.size(), 0);
+  for (size_t v = 0; v < copied.size(); ++v) {
+    if (tags.joined[v] != v) copied[v] = copied[tags.joined[v]] = 1;
+  }
+  return copied;
+}
+
 }  // namespace
 
 void FitToInput(const InputSurface& surface, const SurfaceFitOptions& options, NormalMesh* remesh) {
@@ -131,7 +140,11 @@ void FitToInput(const InputSurface& surface, const SurfaceFitOptions& options, N
     samples[i] = SampleAt(surface, points[i], finest, tree, remesh->surface_normals);
   });
   const std::vector<double> moves = Solve(NormalEquations(samples, options.stiffness), mesh.positions.size(), options.iterations);
-  for (size_t v = 0; v < moves.size(); ++v) mesh.positions[v] += remesh->surface_normals[v] * static_cast<float>(moves[v]);
+  const std::vector<uint8_t> pinned = CopiedVertices(mesh.tags);
+  for (size_t v = 0; v < moves.size(); ++v) {
+    if (v < pinned.size() && pinned[v]) continue;
+    mesh.positions[v] += remesh->surface_normals[v] * static_cast<float>(moves[v]);
+  }
 }
 
 }  // namespace lacerta
