@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "draco/custom_form.h"
 #include "draco/rate_control.h"
+#include "draco/subdivided_input.h"
 #include "draco/zero_level_search.h"
 #include "lacerta/clean.h"
 #include "lacerta/codec.h"
@@ -12,13 +14,15 @@
 #include "lacerta/surface_distance.h"
 #include "remesh/decimate.h"
 #include "remesh/input_surface.h"
+#include "remesh/unsubdivide.h"
 
 namespace lacerta {
 namespace {
 
+constexpr size_t kFewestTriangles = 500;  // worth a base and levels
+
 // The topology of a mesh that the remesher of this version can take, or why it cannot.
 StatusOr<Topology> RemeshableTopology(const TriangleMesh& mesh) {
-  constexpr size_t kFewestTriangles = 500;
   if (mesh.triangles.size() < kFewestTriangles) return Unsupported("too few triangles to be worth remeshing");
   StatusOr<Topology> topology = BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles);
   if (!topology.ok()) return Unsupported("not an oriented manifold: " + topology.status().message());
@@ -96,12 +100,29 @@ StatusOr<EncodedMesh> InForm(StreamForm form, EncodedMesh mesh) {
   return mesh;
 }
 
+// The mesh on its own connectivity where that is subdivided and reaches the target; none else.
+std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter,
+                                             const ResolvedTarget& target, EncodeMode mode) {
+  if (mesh.triangles.size() < kFewestTriangles) return std::nullopt;
+  const std::optional<Unsubdivided> split = UndoSubdivision(mesh);
+  if (!split) return std::nullopt;
+  StatusOr<ChosenStream> chosen = CodeSubdivided(mesh, *split, meter, target, mode);
+  if (!chosen.ok() || !chosen.value().measured.meets_target) return std::nullopt;
+  return std::move(chosen).value();
+}
+
 // The remeshed surface at the target, or a simplified mesh in stock Draco form where that is better.
 StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                     const EncodeOptions& options, const EncodeReport& report) {
   const auto progress = [&](double share, const char* stage) {
     if (options.progress) options.progress(share, stage);
   };
+  progress(0.0, "looking for subdivision");
+  if (const std::optional<ChosenStream> subdivided = EncodeSubdivided(mesh, meter, target, options.mode)) {
+    EncodeReport as_it_is = report;
+    as_it_is.subdivided_input = true;
+    return FromRefinement(meter, *subdivided, as_it_is, ReasonForMiss(subdivided->measured, target));
+  }
   LACERTA_ASSIGN_OR_RETURN(const Topology topology, RemeshableTopology(mesh));
   progress(0.0, "simplifying");
   const CollapseHistory history = Decimate(mesh, topology, DecimateOptions());

@@ -127,7 +127,7 @@ TEST(UndoSubdivisionTest, IrregularBases) {
     SCOPED_TRACE(shape.name);
     DecimateOptions options;
     options.target_vertices = 60;
-    const CollapseHistory history = Decimate(shape.mesh, options);
+    const CollapseHistory history = lacerta::testing::Decimated(shape.mesh, options);
     const BaseDomain domain(history, history.num_collapses());
     const TriangleMesh base = {lacerta::testing::BasePositions(domain, shape.mesh), domain.triangles()};
     if (UndoSubdivision(base).has_value()) continue;  // a square plate can end up as a split one
@@ -141,29 +141,18 @@ TEST(UndoSubdivisionTest, ComponentsAgreeOnTheLevelsOfTheLeastDivisible) {
   EXPECT_FALSE(UndoSubdivision(Together(Split(shapes::Icosahedron(), 3), shapes::Tetrahedron())).has_value());
 }
 
-// The two triangles at an edge, turned into the two across it.
-TriangleMesh WithEdgeFlipped(TriangleMesh mesh, uint32_t edge) {
-  const Topology t = shapes::TopologyOf(mesh);
-  const auto [f, g] = t.edge_faces[edge];
-  const uint32_t a = OppositeVertex(t, f, edge), b = OppositeVertex(t, g, edge);
-  const auto [from, to] = t.edges[edge];  // as f runs
-  mesh.triangles[f] = {a, from, b};
-  mesh.triangles[g] = {b, to, a};
-  return mesh;
-}
-
 TEST(UndoSubdivisionTest, OneChangeAnywhereIsEnoughToRefuse) {
   for (const TriangleMesh& mesh : {Split(shapes::Icosahedron(), 4), shapes::Torus(48, 24), shapes::GridWithBorder(48, 32)}) {
     ASSERT_TRUE(UndoSubdivision(mesh).has_value());
     const Topology t = shapes::TopologyOf(mesh);
     for (uint32_t edge = 5; edge < t.num_edges(); edge += t.num_edges() / 7) {
       if (t.is_border(edge)) continue;
-      const TriangleMesh flipped = WithEdgeFlipped(mesh, edge);
+      const TriangleMesh flipped = shapes::WithEdgeFlipped(mesh, edge);
       ASSERT_TRUE(BuildTopology(t.num_vertices, flipped.triangles).ok());
       EXPECT_FALSE(UndoSubdivision(flipped).has_value()) << edge;
     }
     for (size_t f = 0; f < mesh.triangles.size(); f += mesh.triangles.size() / 7) {
-      TriangleMesh missing = mesh;  // and three more, so that the number of faces tells nothing
+      TriangleMesh missing = mesh;
       missing.triangles.erase(missing.triangles.begin() + static_cast<std::ptrdiff_t>(f));
       EXPECT_FALSE(UndoSubdivision(missing).has_value()) << f;
       const Triangle whole = mesh.triangles[f];
@@ -180,7 +169,7 @@ TEST(UndoSubdivisionTest, OneChangeAnywhereIsEnoughToRefuse) {
 
 TEST(UndoSubdivisionTest, RefusesFourHolesWhereTheNumberOfFacesStillDivides) {
   TriangleMesh mesh = shapes::GridWithBorder(48, 32);
-  for (const size_t f : {2000u, 1500u, 1000u, 500u}) mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(f));
+  for (const std::ptrdiff_t f : {2000, 1500, 1000, 500}) mesh.triangles.erase(mesh.triangles.begin() + f);
   EXPECT_FALSE(UndoSubdivision(mesh).has_value());
 }
 
