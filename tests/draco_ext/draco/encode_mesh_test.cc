@@ -114,7 +114,7 @@ TEST(EncodeMeshTest, ReportsWhatTheStreamHolds) {
 
 TEST(EncodeMeshTest, EveryPrefixDecodesToItsLastCompleteLevel) {
   for (const StreamForm form : {StreamForm::kDraco, StreamForm::kCustom}) {
-    const EncodedMesh encoded = EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 44, form));
+    const EncodedMesh encoded = EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 50, form));
     ASSERT_GE(encoded.part_sizes.size(), 3u);
     size_t complete = encoded.part_sizes[0];
     int level = 0;
@@ -151,8 +151,6 @@ TEST(EncodeMeshTest, SameBytesOnOneThreadAndOnTwo) {
 
 TEST(EncodeMeshTest, WhatCannotBeRemeshedIsAStockStreamWithTheReason) {
   const std::vector<std::pair<TriangleMesh, std::string>> cases = {
-      {shapes::GridWithBorder(21, 20, 0.3f), "border"},
-      {shapes::PuncturedSphere(3), "border"},
       {shapes::Misoriented(3), "not an oriented manifold"},
       {shapes::Pinched(), "too few triangles"},
       {shapes::NonManifoldEdge(), "too few triangles"},
