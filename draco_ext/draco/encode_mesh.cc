@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "draco/custom_form.h"
 #include "draco/rate_control.h"
+#include "draco/subdivided_input.h"
 #include "draco/zero_level_search.h"
 #include "lacerta/clean.h"
 #include "lacerta/codec.h"
@@ -13,9 +15,12 @@
 #include "remesh/decimate.h"
 #include "remesh/input_surface.h"
 #include "remesh/surface_parts.h"
+#include "remesh/unsubdivide.h"
 
 namespace lacerta {
 namespace {
+
+constexpr size_t kFewestTriangles = 500;  // worth a base and levels
 
 // Measured error of every level that `stream` decodes to.
 Status ReportLevels(const SurfaceDistanceMeter& meter, const CodedStream& stream, EncodeReport* report) {
@@ -88,6 +93,17 @@ StatusOr<EncodedMesh> InForm(StreamForm form, EncodedMesh mesh) {
   return mesh;
 }
 
+// The mesh on its own connectivity where that is subdivided and reaches the target; none else.
+std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter,
+                                             const ResolvedTarget& target, EncodeMode mode) {
+  if (mesh.triangles.size() < kFewestTriangles) return std::nullopt;
+  const std::optional<Unsubdivided> split = UndoSubdivision(mesh);
+  if (!split) return std::nullopt;
+  StatusOr<ChosenStream> chosen = CodeSubdivided(mesh, *split, meter, target, mode);
+  if (!chosen.ok() || !chosen.value().measured.meets_target) return std::nullopt;
+  return std::move(chosen).value();
+}
+
 // The remeshed surface at the target, or a simplified mesh in stock Draco form where that is better.
 StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                     const EncodeOptions& options, const EncodeReport& report) {
@@ -95,6 +111,11 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
     if (options.progress) options.progress(share, stage);
   };
   progress(0.0, "looking at the surface");
+  if (const std::optional<ChosenStream> subdivided = EncodeSubdivided(mesh, meter, target, options.mode)) {
+    EncodeReport as_it_is = report;
+    as_it_is.subdivided_input = true;
+    return FromRefinement(meter, *subdivided, as_it_is, ReasonForMiss(subdivided->measured, target));
+  }
   const SurfaceParts parts = SplitSurface(mesh);
   if (parts.refined.triangles.empty()) return Unsupported("no component has triangles enough to be worth remeshing");
   progress(0.02, "simplifying");

@@ -10,6 +10,7 @@
 #include "encoder/quantizer.h"
 #include "encoder/step_law.h"
 #include "encoder/stream_writer.h"
+#include "encoder/vertex_repair.h"
 #include "lacerta/surface_distance.h"
 #include "remesh/base_domain.h"
 #include "remesh/piercing.h"
@@ -17,9 +18,6 @@
 
 namespace lacerta {
 namespace {
-
-// Step of the base lattice while the order of the base is found, as a share of the diagonal.
-constexpr double kNominalStep = 5e-4;
 
 TriangleMesh Together(TriangleMesh a, const TriangleMesh& b) {
   const auto offset = static_cast<uint32_t>(a.positions.size());
@@ -84,7 +82,9 @@ StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(double lambda, double de
       RoundToLattice({base, normal_mesh_.mesh.base_triangles}, static_cast<float>(BaseStepForSlope(lambda)));
   DescentOptions options;
   options.lambda = descent_lambda;
-  return Descend(target_, QuantizeClosedLoop(target_, lattice, StepsForSlope(target_, detail_scales_, lambda)), options);
+  CodedSurface coded = Descend(target_, QuantizeClosedLoop(target_, lattice, StepsForSlope(target_, detail_scales_, lambda)), options);
+  if (target_.keeps_vertices) RepairVertices(target_, &coded);
+  return coded;
 }
 
 StatusOr<CodedStream> NormalMeshCandidate::Code(double lambda, double descent_lambda, EncodeMode mode) const {

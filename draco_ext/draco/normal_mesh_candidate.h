@@ -15,6 +15,9 @@
 
 namespace lacerta {
 
+// Step of the base lattice while the order of the base is found, as a share of the diagonal.
+inline constexpr double kNominalStep = 5e-4;
+
 // A coded surface as bytes and as the mesh that a decoder makes of them.
 struct CodedStream {
   Bytes base;                        // the base section
@@ -34,6 +37,9 @@ class NormalMeshCandidate {
   // still part beside it. num_levels: above the base. Fails where Draco cannot carry the base.
   static StatusOr<NormalMeshCandidate> Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels);
 
+  // normal_mesh: over base.mesh, in its order.
+  NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);
+
   // Codes at a slope of the rate-distortion curve: lambda in squared model units per bit, > 0. A larger one gives fewer bytes.
   StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const { return Code(lambda, lambda, mode); }
   // The same with the steps of one slope and the choice of coefficients of another, which paper mode ignores. Where a level
@@ -46,7 +52,6 @@ class NormalMeshCandidate {
   TriangleMesh RemeshedSurface() const;
 
  private:
-  NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);
   StatusOr<CodedSurface> CodeSurface(double lambda, double descent_lambda, EncodeMode mode) const;
   std::vector<Triangle> FinestTriangles() const;  // in the order of MeshAtLevel
 

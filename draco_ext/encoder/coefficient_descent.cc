@@ -46,13 +46,17 @@ class Reach {
 
 // The metric of SurfaceTarget at a vertex, applied to an offset. Sliding along the surface costs a share of what leaving it
 // costs: little where the vertex was found by piercing, so that vertices just do not drift; much where it was not, since the
-// surface is not flat there in the sense that planes presume.
+// surface is not flat there in the sense that planes presume. Where vertices are kept, what suits tangential steps of twice the
+// normal one.
 Vec3f Weigh(const SurfaceTarget& target, size_t v, const Vec3f& offset) {
-  constexpr float kPiercedSlideCost = 0.05f, kOtherSlideCost = 0.15f, kCurveSlideCost = 0.5f;
+  constexpr float kPiercedSlideCost = 0.05f, kOtherSlideCost = 0.15f, kKeptSlideCost = 0.25f, kCurveSlideCost = 0.5f;
   const bool on_curve = target.topologies.back().role[v] != CurveRole::kSmooth;
   const size_t num_base = target.points.size() - target.piercing.size();
   const bool pierced = v < num_base || target.piercing[v - num_base] == PiercingKind::kNormal;
-  const float slide_cost = on_curve ? kCurveSlideCost : pierced ? kPiercedSlideCost : kOtherSlideCost;
+  const float slide_cost = on_curve                ? kCurveSlideCost
+                           : target.keeps_vertices ? kKeptSlideCost
+                           : pierced               ? kPiercedSlideCost
+                                                   : kOtherSlideCost;
   const Vec3f& n = target.normals[v];
   return offset * slide_cost + n * ((1 - slide_cost) * Dot(offset, n));
 }
@@ -294,7 +298,7 @@ CodedSurface Descend(const SurfaceTarget& target, CodedSurface coded, const Desc
       DescendLevel(target, Synthesize(target, coded), level, options.lambda, &coded, &state);
     }
   }
-  DropIdleSets(target, options.lambda, &coded);
+  if (!target.keeps_vertices) DropIdleSets(target, options.lambda, &coded);  // by distance to the surface alone
   return coded;
 }
 

@@ -28,8 +28,9 @@ std::vector<double> DetailScales(const SurfaceTarget& target) {
     double sum = 0;
     for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
       if (coarse.is_copy(e)) continue;
-      const double normal = Dot(target.points[coarse.num_vertices + e] - predicted[e], frames[e].normal);
-      sum += normal * normal;
+      const Vec3f detail = target.points[coarse.num_vertices + e] - predicted[e];
+      const double scale = target.keeps_vertices ? Norm(detail) : Dot(detail, frames[e].normal);
+      sum += scale * scale;
     }
     scales.push_back(std::sqrt(sum / coarse.num_edges()));
   }

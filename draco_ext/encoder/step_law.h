@@ -14,7 +14,8 @@
 
 namespace lacerta {
 
-// Root mean square of the normal details of each level 1 .. L before quantization, model units.
+// Root mean square of the normal details of each level 1 .. L before quantization, or of the whole details where vertices are
+// kept; model units.
 std::vector<double> DetailScales(const SurfaceTarget& target);
 
 // Steps of all levels. detail_scales: of DetailScales; lambda: squared model units per bit, > 0.

@@ -88,7 +88,8 @@ SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
   }
   std::vector<uint32_t> next_twin = ChainTwins(mesh.mesh.tags.joined, topologies);
   return {std::move(topologies), std::move(stencils), std::move(spreads), mesh.mesh.positions,
-          mesh.surface_normals,  std::move(masses),   mesh.piercing,      std::move(next_twin)};
+          mesh.surface_normals,  std::move(masses),   mesh.piercing,      std::move(next_twin),
+          mesh.keeps_vertices};
 }
 
 }  // namespace lacerta

@@ -1,7 +1,7 @@
 // What the decoded surface is fitted to: the input near each vertex of a normal mesh, as a plane with a weight.
 //
 // For a decoded vertex x near the point t of the input with unit normal n, ((x - t) . n)^2 is the squared distance to the
-// input up to second order: sliding along the surface costs nothing. Weighted with the area that the vertex stands for, the
+// input up to second order: sliding along the surface costs nothing, unless vertices are to be kept. Weighted with the area that the vertex stands for, the
 // sum over the finest level approximates the squared one-sided surface distance.
 #ifndef LACERTA_ENCODER_SURFACE_TARGET_H_
 #define LACERTA_ENCODER_SURFACE_TARGET_H_
@@ -39,6 +39,7 @@ struct SurfaceTarget {
   // #V of the finest level, or empty where no borders are joined: the next vertex that always lies where this one does, or kNone.
   // Chains begin with the vertex whose lattice point or coefficients count.
   std::vector<uint32_t> next_twin;
+  bool keeps_vertices = false;                // sliding is an error too
 
   int num_levels() const { return static_cast<int>(spreads.size()); }
 };

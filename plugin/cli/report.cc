@@ -28,6 +28,7 @@ Json ToJson(const EncodeReport& report) {
             {"duplicateTriangles", report.clean.duplicate_triangles},
             {"isolatedVertices", report.clean.isolated_vertices}}},
           {"progressive", report.progressive},
+          {"subdividedInput", report.subdivided_input},
           {"reason", report.reason},
           {"normalShare", NumberOrNull(report.normal_share)},
           {"remeshPsnr", NumberOrNull(report.remesh_psnr)},

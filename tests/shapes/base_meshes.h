@@ -116,6 +116,16 @@ inline Topology TopologyOf(const TriangleMesh& mesh) {
   return BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles).value();
 }
 
+// The two triangles at an inner edge, turned into the two across it.
+inline TriangleMesh WithEdgeFlipped(TriangleMesh mesh, uint32_t edge) {
+  const Topology t = TopologyOf(mesh);
+  const uint32_t f = t.edge_faces[edge][0], g = t.edge_faces[edge][1];
+  const uint32_t a = OppositeVertex(t, f, edge), b = OppositeVertex(t, g, edge);
+  mesh.triangles[f] = {a, t.edges[edge][0], b};  // edges run as in their first face
+  mesh.triangles[g] = {b, t.edges[edge][1], a};
+  return mesh;
+}
+
 // The mesh subdivided num_levels times by the butterfly, every vertex then moved by displace(position).
 template <typename Displace>
 SemiRegularMesh Subdivided(const TriangleMesh& base, int num_levels, const Displace& displace) {

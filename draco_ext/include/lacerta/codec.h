@@ -65,6 +65,8 @@ struct EncodeReport {
   uint64_t input_triangles = 0;
   double diagonal = 0.0;          // of the input's bounding box, model units
   bool progressive = false;       // false: a zero-level stream, stock Draco alone
+  // The input had subdivision connectivity and was coded on it: vertices and triangles come back one for one.
+  bool subdivided_input = false;
   std::string reason;             // why it is not progressive, or why the target could not be met; else empty
   double normal_share = 0.0;      // share of detail coefficients whose remeshed position lies on the normal line
   double remesh_psnr = 0.0;       // of the unquantized remesh

@@ -22,6 +22,8 @@ struct NormalMesh {
   SemiRegularMesh mesh;
   std::vector<Vec3f> surface_normals;   // #V, unit normal of the input at each vertex
   std::vector<PiercingKind> piercing;   // #V - #V0, of the vertices above the base, in order
+  // The vertices are the input's own and have to come back where they are, not just somewhere on the surface.
+  bool keeps_vertices = false;
 };
 
 // Share of the vertices above the base, those on curves aside, that lie on their normal line; 1 where there are none.
