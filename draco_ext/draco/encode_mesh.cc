@@ -110,6 +110,7 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
   const auto progress = [&](double share, const char* stage) {
     if (options.progress) options.progress(share, stage);
   };
+  if (!options.progressive) return Unsupported("no refinement levels were asked for");
   progress(0.0, "looking at the surface");
   if (const std::optional<ChosenStream> subdivided = EncodeSubdivided(mesh, meter, target, options.mode)) {
     EncodeReport as_it_is = report;
@@ -125,7 +126,7 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
                                                                    target, options.mode, options.progress));
   progress(0.95, "comparing with Draco");
   LACERTA_ASSIGN_OR_RETURN(std::optional<ZeroLevelStream> simpler,
-                           SimplerIfBetter(mesh, history, meter, target, chosen.measured));
+                           SimplerIfBetter(mesh, meter, target, chosen.measured));
   const std::string reason = simpler ? ReasonForSimpler(*simpler, target) : ReasonForMiss(chosen.measured, target);
   if (simpler) return FromZeroLevel(std::move(*simpler), report, reason);
   return FromRefinement(meter, chosen, report, reason);
@@ -146,7 +147,8 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   report.diagonal = meter.diagonal();
 
   StatusOr<EncodedMesh> encoded = EncodeSurface(mesh, meter, target, options, report);
-  if (!encoded.ok()) {  // the mesh as it is, then, with the reason
+  if (!encoded.ok()) {  // without refinement, then, with the reason
+    if (options.progress) options.progress(0.1, "simplifying");
     LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, CodeZeroLevel(mesh, meter, target));
     const char* const miss = zero.meets_target ? "" : "; the target is out of reach, this is the nearest";
     encoded = FromZeroLevel(std::move(zero), report, encoded.status().message() + miss);

@@ -19,6 +19,7 @@ namespace {
 struct GridMesh {
   TriangleMesh mesh;  // integers as floats
   QuantizationGrid grid;
+  int bits = 1;
 };
 
 StatusOr<GridMesh> Quantize(const TriangleMesh& mesh, int bits) {
@@ -36,6 +37,7 @@ StatusOr<GridMesh> Quantize(const TriangleMesh& mesh, int bits) {
   const float range = std::max({size.x, size.y, size.z});
   if (!std::isfinite(range)) return InvalidData("bounding box of the mesh does not fit a float; scale the mesh down");
   result.grid.range = std::isnormal(range) ? range : 1.0f;
+  result.bits = bits;
   const double divisor = (1 << bits) - 1;
   const double scale = divisor / static_cast<double>(result.grid.range);
   result.mesh.triangles = mesh.triangles;
@@ -48,6 +50,8 @@ StatusOr<GridMesh> Quantize(const TriangleMesh& mesh, int bits) {
   }
   return result;
 }
+
+constexpr StockSettings kUsualSettings = {StockSettings::Connectivity::kEdgebreakerValence, StockSettings::Prediction::kParallelogram, 0};
 
 using Corners = std::array<std::array<float, 3>, 3>;
 
@@ -76,6 +80,38 @@ bool HoldsTriangles(const Bytes& stream, const std::vector<Corners>& triangles) 
   return decoded.ok() && SortedTriangles(decoded.value().mesh) == triangles;
 }
 
+// Edgebreaker, or an error where Draco refuses the mesh or does not keep its triangles.
+StatusOr<Bytes> EdgebreakerStream(const GridMesh& quantized, const std::vector<Corners>& triangles, CodingEffort effort) {
+  Bytes stream;
+  if (effort == CodingEffort::kQuick) {
+    LACERTA_ASSIGN_OR_RETURN(stream, EncodeIntegerPositions(*ToDracoMesh(quantized.mesh), quantized.bits, kUsualSettings));
+  } else {
+    LACERTA_ASSIGN_OR_RETURN(StockAttempt attempt, SmallestEdgebreakerStream(quantized.mesh, quantized.bits));
+    stream = std::move(attempt.stream);
+  }
+  if (!HoldsTriangles(stream, triangles)) return Unsupported("edgebreaker does not keep the triangles of the mesh");
+  return stream;
+}
+
+StatusOr<CodedZeroLevel> Encode(const GridMesh& quantized, CodingEffort effort) {
+  const std::vector<Corners> triangles = SortedTriangles(quantized.mesh);
+  CodedZeroLevel result;
+  StatusOr<Bytes> edgebreaker = EdgebreakerStream(quantized, triangles, effort);
+  if (edgebreaker.ok()) {
+    result.stream = std::move(edgebreaker).value();
+  } else {
+    result.sequential = true;
+    const StockSettings settings = {StockSettings::Connectivity::kSequential, StockSettings::Prediction::kDifference,
+                                    0};
+    LACERTA_ASSIGN_OR_RETURN(result.stream, EncodeIntegerPositions(*ToDracoMesh(quantized.mesh), quantized.bits, settings));
+    if (!HoldsTriangles(result.stream, triangles)) return InternalError("Draco did not keep the triangles of the mesh");
+  }
+  LACERTA_RETURN_IF_ERROR(SetQuantizationGrid(quantized.grid, &result.stream));
+  LACERTA_ASSIGN_OR_RETURN(DecodedBase decoded, DecodeBaseMesh(result.stream, kNoDecodeLimits));
+  result.mesh = std::move(decoded.mesh);
+  return result;
+}
+
 }  // namespace
 
 StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits) {
@@ -84,23 +120,23 @@ StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits) {
   }
   LACERTA_RETURN_IF_ERROR(CheckEncodable(mesh));
   LACERTA_ASSIGN_OR_RETURN(const GridMesh quantized, Quantize(mesh, bits));
-  const std::vector<Corners> triangles = SortedTriangles(quantized.mesh);
+  return Encode(quantized, CodingEffort::kFull);
+}
 
-  CodedZeroLevel result;
-  StatusOr<StockAttempt> edgebreaker = SmallestEdgebreakerStream(quantized.mesh, bits);
-  if (edgebreaker.ok() && HoldsTriangles(edgebreaker.value().stream, triangles)) {
-    result.stream = std::move(edgebreaker).value().stream;
-  } else {
-    result.sequential = true;
-    const StockSettings settings = {StockSettings::Connectivity::kSequential, StockSettings::Prediction::kDifference,
-                                    0};
-    LACERTA_ASSIGN_OR_RETURN(result.stream, EncodeIntegerPositions(*ToDracoMesh(quantized.mesh), bits, settings));
-    if (!HoldsTriangles(result.stream, triangles)) return InternalError("Draco did not keep the triangles of the mesh");
+StatusOr<CodedZeroLevel> EncodeLatticeMesh(const LatticeMesh& mesh, CodingEffort effort) {
+  GridMesh quantized;
+  int32_t extent = 1;
+  for (const auto& p : mesh.lattice) {
+    extent = std::max({extent, p[0], p[1], p[2]});
+    quantized.mesh.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
   }
-  LACERTA_RETURN_IF_ERROR(SetQuantizationGrid(quantized.grid, &result.stream));
-  LACERTA_ASSIGN_OR_RETURN(DecodedBase decoded, DecodeBaseMesh(result.stream, kNoDecodeLimits));
-  result.mesh = std::move(decoded.mesh);
-  return result;
+  while (extent >> quantized.bits != 0) ++quantized.bits;
+  constexpr int kMostBits = 22;  // Draco adds a half in floats before it rounds
+  if (quantized.bits > kMostBits) return InvalidData("lattice spans more than 22 bits; choose a larger step");
+  quantized.mesh.triangles = mesh.triangles;
+  quantized.grid = {mesh.origin, mesh.step * static_cast<float>((1 << quantized.bits) - 1)};
+  LACERTA_RETURN_IF_ERROR(CheckEncodable(quantized.mesh));
+  return Encode(quantized, effort);
 }
 
 }  // namespace lacerta

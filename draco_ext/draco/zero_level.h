@@ -4,6 +4,7 @@
 
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
+#include "remesh/mesh_fit.h"
 
 namespace lacerta {
 
@@ -13,6 +14,11 @@ struct CodedZeroLevel {
   bool sequential = false;  // edgebreaker would have changed the surface
 };
 
+enum class CodingEffort {
+  kQuick,  // one of Draco's settings, within a few percent of
+  kFull,   // the smallest of them
+};
+
 // Codes any mesh, manifold or not: positions are rounded to 2^bits - 1 steps along the longest side of the bounding box
 // (1 <= bits <= 24), so that each is off by at most half a step in every coordinate. The triangles are kept as a set
 // with their orientations, one to one, with degenerate ones and duplicates; vertices may come back in another order,
@@ -20,6 +26,10 @@ struct CodedZeroLevel {
 // edgebreaker first, sequential only where that does not keep the triangles. Fails with kInvalidArgument on a bad
 // number of bits, with kInvalidData on what CheckEncodable refuses and on a bounding box that does not fit a float.
 StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits);
+
+// The same for a mesh on a lattice of any step: the decoder's step is that one but for rounding. Fails with kInvalidData on a
+// lattice that spans more than 22 bits too.
+StatusOr<CodedZeroLevel> EncodeLatticeMesh(const LatticeMesh& mesh, CodingEffort effort);
 
 }  // namespace lacerta
 

@@ -2,99 +2,265 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
 #include <utility>
 
 #include "draco/zero_level.h"
-#include "remesh/base_domain.h"
+#include "draco/zero_level_candidate.h"
+#include "remesh/simplify.h"
 
 namespace lacerta {
 namespace {
 
-// More bits than that and neighbouring points of the grid may be one and the same float.
-constexpr int kFewestBits = 4, kMostBits = 20;
+double Square(double x) { return x * x; }
 
-StatusOr<ZeroLevelStream> CodeWithBits(const TriangleMesh& mesh, int bits, const SurfaceDistanceMeter& meter,
-                                       const ResolvedTarget& target) {
-  LACERTA_ASSIGN_OR_RETURN(CodedZeroLevel coded, EncodeZeroLevel(mesh, bits));
-  ZeroLevelStream result;
-  result.stream = std::move(coded.stream);
-  result.mesh = std::move(coded.mesh);
-  // So coarse a grid may leave no area at all to measure: infinitely far then.
-  const StatusOr<SurfaceDistance> distance = meter.Measure(result.mesh, SurfaceDistanceOptions::RmsOnly());
-  result.distance = distance.ok() ? distance.value().Rms() : meter.diagonal();
-  result.psnr = Psnr(result.distance, meter.diagonal());
-  result.meets_target = target.is_rate ? static_cast<double>(result.stream.size()) <= target.bytes : result.psnr >= target.psnr;
-  return result;
-}
-
-// Bits at which rounding alone takes about the distance that the target leaves: a step of 2^-bits of the longest side errs by
-// step / sqrt(12) in each direction.
-int FirstBits(double psnr) {
-  const double distance = std::pow(10.0, -psnr / 20);
-  return std::clamp(static_cast<int>(std::ceil(-std::log2(distance * std::sqrt(12.0)))), kFewestBits, kMostBits);
-}
-
-// Bits grow both quality and bytes: the fewest that reach a PSNR, or the most that keep to a number of bytes.
-StatusOr<ZeroLevelStream> CodeMeshAtTarget(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target) {
-  constexpr double kUsualPsnr = 70;
-  int bits = FirstBits(target.is_rate ? kUsualPsnr : target.psnr);
-  LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream best, CodeWithBits(mesh, bits, meter, target));
-  const int direction = best.meets_target == target.is_rate ? 1 : -1;
-  for (bits += direction; bits >= kFewestBits && bits <= kMostBits; bits += direction) {
-    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream next, CodeWithBits(mesh, bits, meter, target));
-    const bool had_met = best.meets_target, meets = next.meets_target;
-    if (had_met && !meets) break;
-    if (!meets && !target.is_rate && next.psnr <= best.psnr + 0.1) break;  // bits no longer help
-    best = std::move(next);
-    if (!had_met && meets) break;
+class ZeroLevelSearch {
+ public:
+  ZeroLevelSearch(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target)
+      : mesh_(mesh), meter_(meter), target_(target), sequence_(mesh), fit_target_(mesh, kFewestSamples) {
+    if (!target.is_rate) distortion_ = Square(DistanceOfPsnr(target.psnr, meter.diagonal()));
   }
-  return best;
-}
 
-TriangleMesh SimplifiedMesh(const TriangleMesh& mesh, const CollapseHistory& history, uint32_t num_vertices) {
-  const auto num_input = static_cast<uint32_t>(mesh.positions.size());
-  const BaseDomain domain(history, std::min(history.num_collapses(), num_input - num_vertices));
-  TriangleMesh result;
-  for (uint32_t v = 0; v < domain.num_vertices(); ++v) result.positions.push_back(mesh.positions[domain.input_vertex(v)]);
-  result.triangles = domain.triangles();
-  return result;
-}
+  // Looks for the best number of triangles. most_bytes: of a stream that there is at the PSNR; false where it is hopeless to
+  // become smaller than that.
+  StatusOr<bool> FindSize(double most_bytes) {
+    LACERTA_ASSIGN_OR_RETURN(const uint32_t first, FirstSize());
+    LACERTA_RETURN_IF_ERROR(Look(first));
+    const Trial& trial = tried_.at(first);
+    if (!target_.is_rate && trial.meets && static_cast<double>(trial.coding.bytes) > kHopeless * most_bytes) return false;
+    if (!target_.is_rate) LACERTA_RETURN_IF_ERROR(Look(SizeByShare(trial)));
+    for (double ratio = kWideRatio; ratio > kNarrowRatio; ratio = std::sqrt(ratio)) {
+      for (int moves = 0; moves < kMostMoves; ++moves) {
+        const uint32_t center = best_;
+        LACERTA_RETURN_IF_ERROR(Look(Clamped(center / ratio)));
+        if (best_ == center) LACERTA_RETURN_IF_ERROR(Look(Clamped(center * ratio)));
+        if (best_ == center) break;
+      }
+      constexpr uint32_t kManyTriangles = 3000;  // there the best is broad, and looking takes long
+      if (best_ > kManyTriangles) break;
+    }
+    // A mesh of many regular triangles may take fewer bytes as it is.
+    constexpr double kMostRegular = 4;
+    if (static_cast<double>(mesh_.triangles.size()) < kMostRegular * best_) LACERTA_RETURN_IF_ERROR(Look(Clamped(1e18)));
+    return !(!target_.is_rate && tried_.at(best_).meets && static_cast<double>(tried_.at(best_).coding.bytes) > kHopelessAtBest * most_bytes);
+  }
 
-bool IsBetter(const ZeroLevelStream& a, bool b_meets, size_t b_bytes, double b_psnr, const ResolvedTarget& target) {
-  if (a.meets_target != b_meets) return a.meets_target;
-  if (target.is_rate == a.meets_target) return a.psnr > b_psnr;  // at a rate that is kept, or at a PSNR that is not reached
-  return a.stream.size() < b_bytes;
-}
+  // The stream of the best size.
+  StatusOr<ZeroLevelStream> Finish() { return Finish(tried_.at(best_)); }
+
+  bool IsBetter(const ZeroLevelStream& a, bool b_meets, size_t b_bytes, double b_psnr) const {
+    if (a.meets_target != b_meets) return a.meets_target;
+    if (target_.is_rate == a.meets_target) return a.psnr > b_psnr;  // at a rate that is kept, or at a PSNR that is not reached
+    return a.stream.size() < b_bytes;
+  }
+
+ private:
+  static constexpr size_t kFewestSamples = 6000, kMostSamples = 80000;
+  // By which the numbers of triangles differ that are compared.
+  static constexpr double kWideRatio = 1.25, kNarrowRatio = 1.1;
+  static constexpr int kMostMoves = 4;
+  // Against what there is: the first size tried is not yet the best, and the last steps gain some bytes too.
+  static constexpr double kHopeless = 1.4, kHopelessAtBest = 1.15;
+
+  struct Trial {
+    std::shared_ptr<ZeroLevelCandidate> candidate;
+    ZeroLevelCandidate::Coding coding;
+    double bit_weight = 1;
+    double score = 0;  // less is better
+    bool meets = false;
+  };
+
+  void TakeSamples(double per_triangle, size_t triangles) {
+    const auto wanted = static_cast<size_t>(per_triangle * static_cast<double>(triangles));
+    fit_target_.Resample(std::clamp(wanted, kFewestSamples, kMostSamples));
+  }
+
+  Status Look(uint32_t triangles) {
+    if (tried_.count(triangles) != 0) return Status();
+    LACERTA_ASSIGN_OR_RETURN(Trial trial, Try(triangles));
+    if (tried_.empty() || trial.score < tried_.at(best_).score) best_ = triangles;
+    tried_.emplace(triangles, std::move(trial));
+    return Status();
+  }
+
+  // Where the fit takes the share of the distance that it takes at the best sizes of most surfaces; the distance falls by about
+  // 5 dB as triangles double.
+  uint32_t SizeByShare(const Trial& trial) const {
+    constexpr double kBestShare = 0.78, kFall = 1.75;
+    const double ratio = std::pow(trial.candidate->fit_distortion() / (kBestShare * distortion_), 1 / kFall);
+    return Clamped(static_cast<double>(trial.candidate->num_triangles()) * std::clamp(ratio, 0.4, 2.5));
+  }
+
+  uint32_t Clamped(double triangles) const {
+    return static_cast<uint32_t>(std::clamp(triangles, static_cast<double>(sequence_.fewest_triangles()),
+                                            static_cast<double>(mesh_.triangles.size())));
+  }
+
+  // The size at which the simplified mesh, before the fit, is at the target but for what the fit usually gains.
+  StatusOr<uint32_t> FirstSize() const {
+    constexpr double kUsualBytesPerTriangle = 1.1, kUsualGain = 1.5;
+    if (target_.is_rate) return Clamped(target_.bytes / kUsualBytesPerTriangle);
+    double low = std::log(Clamped(0)), high = std::log(Clamped(1e18));
+    while (high - low > 0.1) {
+      const double middle = (low + high) / 2;
+      const TriangleMesh simplified = sequence_.MeshWith(Clamped(std::exp(middle)));
+      const StatusOr<SurfaceDistance> distance = meter_.Measure(simplified, SurfaceDistanceOptions::RmsOnly(4000));
+      (distance.ok() && Square(distance.value().Rms()) <= kUsualGain * distortion_ ? high : low) = middle;
+    }
+    return Clamped(std::exp(high));
+  }
+
+  StatusOr<Trial> Try(uint32_t triangles) {
+    Trial trial;
+    TakeSamples(4, triangles);
+    const bool is_input = triangles >= mesh_.triangles.size();
+    using Source = ZeroLevelCandidate::Source;
+    trial.candidate = std::make_shared<ZeroLevelCandidate>(fit_target_, sequence_.MeshWith(triangles),
+                                                           is_input ? Source::kInput : Source::kSimplified);
+    LACERTA_RETURN_IF_ERROR(target_.is_rate ? MeetRate(&trial) : MeetPsnr(&trial));
+    return trial;
+  }
+
+  Status MeetPsnr(Trial* trial) {
+    ZeroLevelCandidate& candidate = *trial->candidate;
+    constexpr double kMostOfFit = 0.93, kFarOff = 1e9;
+    if (candidate.fit_distortion() > kMostOfFit * distortion_) {
+      trial->score = kFarOff * (candidate.fit_distortion() / distortion_);
+      trial->coding.step = candidate.StepFor((1 - kMostOfFit) * distortion_);
+      return Status();
+    }
+    candidate.FitForRate(distortion_ - candidate.fit_distortion(), 1, trial->bit_weight);
+    double step = candidate.StepFor(std::max(distortion_ - candidate.fit_distortion(), (1 - kMostOfFit) * distortion_));
+    constexpr int kSteps = 3;
+    double db = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      LACERTA_ASSIGN_OR_RETURN(trial->coding, candidate.Code(step, 1, CodingEffort::kQuick));
+      db = 10 * std::log10(trial->coding.distortion / distortion_);
+      if (std::fabs(db) < 0.3) break;
+      step = NextStep(step, trial->coding.distortion, candidate.fit_distortion());
+    }
+    // Still a little off the target, where a dB is worth 6 % of the bytes.
+    trial->score = std::log(static_cast<double>(trial->coding.bytes)) + 0.06 * std::clamp(db, -10.0, 10.0);
+    trial->meets = true;
+    return Status();
+  }
+
+  // Of the squared distance, the part that the lattice adds goes with the square of the step.
+  double NextStep(double step, double distortion, double fit) const {
+    const double added = distortion - fit, wanted = distortion_ - fit;
+    const double ratio = added > 0 && wanted > 0 ? std::sqrt(wanted / added) : std::pow(distortion_ / distortion, 0.6);
+    return step * std::clamp(ratio, 0.4, 2.5);
+  }
+
+  Status MeetRate(Trial* trial) {
+    ZeroLevelCandidate& candidate = *trial->candidate;
+    const double fit = std::max(candidate.fit_distortion(), 1e-14 * Square(meter_.diagonal()));
+    candidate.FitForRate(fit, 1, trial->bit_weight);
+    double step = candidate.StepFor(fit);
+    constexpr int kSteps = 5;
+    for (int i = 0; i < kSteps; ++i) {
+      LACERTA_ASSIGN_OR_RETURN(ZeroLevelCandidate::Coding coding, candidate.Code(step, 1, CodingEffort::kQuick));
+      const double excess = static_cast<double>(coding.bytes) / target_.bytes;
+      const bool fits = excess <= 1;
+      if (i == 0 || fits || !trial->meets) trial->coding = std::move(coding);
+      trial->meets = trial->meets || fits;
+      if (excess > 0.98 && excess <= 1) break;
+      step *= StepRatioForBytes(1 / excess * 0.99, candidate);
+    }
+    trial->score = std::log(trial->coding.distortion) +
+                   (trial->meets ? 0 : 1e3 * static_cast<double>(trial->coding.bytes) / target_.bytes);
+    return Status();
+  }
+
+  // The step against the present one that multiplies the bytes by `factor`: a bit of every coordinate for each doubling.
+  double StepRatioForBytes(double factor, const ZeroLevelCandidate& candidate) const {
+    const double bits_per_triangle = 8 * target_.bytes / static_cast<double>(candidate.num_triangles());
+    constexpr double kCoordinatesPerTriangle = 1.5;
+    return std::clamp(std::exp2(bits_per_triangle * (1 - factor) / kCoordinatesPerTriangle), 0.25, 4.0);
+  }
+
+  ZeroLevelStream Measured(CodedZeroLevel coded) const {
+    ZeroLevelStream result;
+    result.stream = std::move(coded.stream);
+    result.mesh = std::move(coded.mesh);
+    // So coarse a lattice may leave no area at all to measure: infinitely far then.
+    const StatusOr<SurfaceDistance> distance = meter_.Measure(result.mesh, SurfaceDistanceOptions::RmsOnly());
+    result.distance = distance.ok() ? distance.value().Rms() : meter_.diagonal();
+    result.psnr = Psnr(result.distance, meter_.diagonal());
+    result.meets_target = target_.is_rate ? static_cast<double>(result.stream.size()) <= target_.bytes : result.psnr >= target_.psnr;
+    return result;
+  }
+
+  // Rounding makes bytes and distance jump a little with the step: several steps are tried, more of them where that costs little,
+  // and judged by few samples first.
+  StatusOr<ZeroLevelStream> Finish(const Trial& trial) {
+    ZeroLevelCandidate& candidate = *trial.candidate;
+    constexpr int kFitRounds = 2;
+    const size_t triangles = candidate.num_triangles();
+    const int num_tries = triangles < 2000 ? 12 : triangles < 5000 ? 6 : 4;
+    const int descent_rounds = triangles < 5000 ? 3 : 2;
+    TakeSamples(8, std::max<size_t>(triangles, 2000));
+    const double added = target_.is_rate ? candidate.fit_distortion() : distortion_ - candidate.fit_distortion();
+    candidate.FitForRate(std::max(added, 0.05 * candidate.fit_distortion()), kFitRounds, 1);
+    double step = trial.coding.step;
+    double bias = 1;  // of squared distances measured in full against those by few samples
+    std::optional<ZeroLevelStream> best;
+    double best_distortion = 0;
+    for (int i = 0; i < num_tries || (!best->meets_target && i < 2 * num_tries); ++i) {
+      LACERTA_ASSIGN_OR_RETURN(ZeroLevelCandidate::Coding coding, candidate.Code(step, descent_rounds, CodingEffort::kFull));
+      const double distortion = bias * coding.distortion;
+      const auto bytes = static_cast<double>(coding.bytes);
+      const bool is_small_enough = !best || !best->meets_target || coding.bytes < best->stream.size();
+      const bool may_be_better = target_.is_rate ? bytes <= target_.bytes && (best_distortion == 0 || distortion < best_distortion)
+                                                 : is_small_enough && distortion < 1.01 * distortion_;
+      if (!best || may_be_better) {
+        ZeroLevelStream stream = Measured(std::move(coding.coded));
+        if (coding.distortion > 0) bias = Square(stream.distance) / coding.distortion;
+        if (!best || IsBetter(stream, best->meets_target, best->stream.size(), best->psnr)) {
+          best = std::move(stream);
+          best_distortion = distortion;
+        }
+      }
+      const double jitter = 1 + 0.02 * (i % 3 - 1);
+      if (target_.is_rate) {
+        step *= StepRatioForBytes(0.995 * target_.bytes / bytes, candidate) * jitter;
+      } else {
+        step = NextStep(step, std::max(distortion, bias * coding.distortion) * 1.005, candidate.fit_distortion()) * jitter;
+      }
+    }
+    return std::move(*best);
+  }
+
+  const TriangleMesh& mesh_;
+  const SurfaceDistanceMeter& meter_;
+  const ResolvedTarget target_;
+  const SimplificationSequence sequence_;
+  FitTarget fit_target_;
+  double distortion_ = 0;  // of a PSNR target
+  std::map<uint32_t, Trial> tried_;  // by number of triangles asked for
+  uint32_t best_ = 0;                // of those
+};
 
 }  // namespace
 
 StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target) {
-  return CodeMeshAtTarget(mesh, meter, target);
+  ZeroLevelSearch search(mesh, meter, target);
+  LACERTA_RETURN_IF_ERROR(search.FindSize(std::numeric_limits<double>::infinity()).status());
+  return search.Finish();
 }
 
-StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const CollapseHistory& history,
-                                                         const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                                         const MeasuredStream& coded) {
-  // Stock Draco spends at least this much on a vertex in all that we measured, so that larger meshes need no try.
-  constexpr double kLeastBytesPerVertex = 0.8;
-  constexpr double kSizeRatio = 1.6;
-  std::optional<ZeroLevelStream> best;
-  const double most_bytes = target.is_rate ? target.bytes : static_cast<double>(coded.stream.size());
-  const double most_vertices = coded.meets_target ? most_bytes / kLeastBytesPerVertex : 1e18;
-  for (auto vertices = static_cast<double>(mesh.positions.size()); vertices >= 4; vertices /= kSizeRatio) {
-    if (vertices > most_vertices) continue;
-    const TriangleMesh simplified = SimplifiedMesh(mesh, history, static_cast<uint32_t>(vertices));
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter.Measure(simplified, SurfaceDistanceOptions::RmsOnly()));
-    const double psnr = Psnr(distance.Rms(), meter.diagonal());
-    const double wanted = target.is_rate ? coded.psnr : target.psnr;
-    if (psnr < wanted && coded.meets_target) break;  // smaller ones are farther off still
-    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, CodeMeshAtTarget(simplified, meter, target));
-    const bool better = best ? IsBetter(zero, best->meets_target, best->stream.size(), best->psnr, target)
-                             : IsBetter(zero, coded.meets_target, coded.stream.size(), coded.psnr, target);
-    if (better) best = std::move(zero);
-    if (!better && best) break;
-  }
-  return best;
+StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter,
+                                                         const ResolvedTarget& target, const MeasuredStream& coded) {
+  ZeroLevelSearch search(mesh, meter, target);
+  const double most_bytes = coded.meets_target ? static_cast<double>(coded.stream.size()) : std::numeric_limits<double>::infinity();
+  std::optional<ZeroLevelStream> result;
+  LACERTA_ASSIGN_OR_RETURN(const bool may_be_better, search.FindSize(most_bytes));
+  if (!may_be_better) return result;
+  LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, search.Finish());
+  if (search.IsBetter(stream, coded.meets_target, coded.stream.size(), coded.psnr)) result = std::move(stream);
+  return result;
 }
 
 }  // namespace lacerta

@@ -1,4 +1,4 @@
-// Streams without refinement at a target: the mesh itself, or a simplified one, in stock Draco form.
+// Streams without refinement at a target: the mesh itself or a simplified one, fitted to it, in stock Draco form.
 #ifndef LACERTA_DRACO_ZERO_LEVEL_SEARCH_H_
 #define LACERTA_DRACO_ZERO_LEVEL_SEARCH_H_
 
@@ -7,7 +7,6 @@
 #include "draco/rate_control.h"
 #include "lacerta/mesh.h"
 #include "lacerta/surface_distance.h"
-#include "remesh/collapse_history.h"
 
 namespace lacerta {
 
@@ -19,15 +18,14 @@ struct ZeroLevelStream {
   bool meets_target = false;
 };
 
-// The whole mesh with the fewest bits per coordinate that meet the target; where none does, the nearest. Any mesh that passed
-// cleaning. Fails as EncodeZeroLevel does.
+// The best zero-level stream found: fewest bytes at a PSNR, highest PSNR at a number of bytes, over numbers of triangles and steps
+// of the lattice; where nothing meets the target, the nearest. mesh: any that passed cleaning. Fails as EncodeZeroLevel does.
 StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target);
 
-// A zero-level stream of the mesh or of one of the simplified meshes of `history` that beats `coded`: it meets the target in
-// fewer bytes, or comes nearer to it; none where there is no such stream.
-StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const CollapseHistory& history,
-                                                         const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                                         const MeasuredStream& coded);
+// The same where it beats `coded`: it meets the target in fewer bytes, or with a higher PSNR in as many, or comes nearer to it.
+// None where it does not, which is often seen early.
+StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter,
+                                                         const ResolvedTarget& target, const MeasuredStream& coded);
 
 }  // namespace lacerta
 

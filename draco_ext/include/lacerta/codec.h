@@ -46,6 +46,9 @@ struct EncodeOptions {
   EncodeTarget target;
   StreamForm form = StreamForm::kDraco;
   EncodeMode mode = EncodeMode::kDefault;
+  // Whether the stream may have refinement levels. False: a zero-level stream, a simplified mesh in stock Draco form, which takes
+  // much less time.
+  bool progressive = true;
   // Called now and then with the finished share (0..1) and what is being done; may be empty.
   std::function<void(double share, const char* stage)> progress;
 };

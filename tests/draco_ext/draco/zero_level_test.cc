@@ -148,6 +148,54 @@ TEST(ZeroLevelTest, CodesRealMeshes) {
   if (tried == 0) GTEST_SKIP() << "no real mesh in " LACERTA_TEST_DATA_DIR;
 }
 
+TEST(ZeroLevelTest, KeepsLatticesOfAnyStep) {
+  const TriangleMesh torus = Torus(12, 9).ToMesh();
+  for (const float step : {0.3f, 0.0123f, 1e-5f}) {
+    LatticeMesh mesh;
+    mesh.origin = {-7.5f, 3.25f, 100};
+    mesh.step = step;
+    mesh.triangles = torus.triangles;
+    for (size_t v = 0; v < torus.positions.size(); ++v) {
+      mesh.lattice.push_back({static_cast<int32_t>(v * 7 % 101), static_cast<int32_t>(v * v % 47), static_cast<int32_t>(v / 3)});
+    }
+    size_t sizes[2] = {};
+    for (const CodingEffort effort : {CodingEffort::kQuick, CodingEffort::kFull}) {
+      const CodedZeroLevel coded = EncodeLatticeMesh(mesh, effort).value();
+      EXPECT_FALSE(coded.sequential);
+      ASSERT_EQ(coded.mesh.triangles.size(), mesh.triangles.size());
+      std::vector<std::array<int32_t, 3>> points, expected = mesh.lattice;
+      for (const Vec3f& p : coded.mesh.positions) {
+        std::array<int32_t, 3> point{};
+        for (int c = 0; c < 3; ++c) {
+          const float value = (p[c] - mesh.origin[c]) / step;
+          point[static_cast<size_t>(c)] = static_cast<int32_t>(std::lround(value));
+          if (step > 1e-3f) {
+            EXPECT_NEAR(value, std::round(value), 1e-2);
+          }
+        }
+        points.push_back(point);
+      }
+      std::sort(points.begin(), points.end());
+      std::sort(expected.begin(), expected.end());
+      if (step > 1e-3f) {  // else the floats near the origin are too coarse
+        EXPECT_EQ(points, expected);
+      }
+      sizes[effort == CodingEffort::kFull] = coded.stream.size();
+    }
+    EXPECT_LE(sizes[1], sizes[0]);
+    EXPECT_GT(static_cast<double>(sizes[1]), 0.7 * static_cast<double>(sizes[0]));
+  }
+}
+
+TEST(ZeroLevelTest, RefusesLatticesOfMoreThan22Bits) {
+  LatticeMesh mesh;
+  mesh.lattice = {{0, 0, 0}, {1 << 22, 0, 0}, {0, 5, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_EQ(EncodeLatticeMesh(mesh, CodingEffort::kQuick).status().code(), StatusCode::kInvalidData);
+  mesh.lattice[1][0] -= 1;
+  EXPECT_TRUE(EncodeLatticeMesh(mesh, CodingEffort::kQuick).ok());
+}
+
 TEST(ZeroLevelTest, RefusesBadInput) {
   TriangleMesh mesh = Octahedron().ToMesh();
   EXPECT_EQ(EncodeZeroLevel(mesh, 0).status().code(), StatusCode::kInvalidArgument);

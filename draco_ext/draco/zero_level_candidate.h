@@ -1,0 +1,60 @@
+// One simplified mesh as a zero-level stream near a target.
+#ifndef LACERTA_DRACO_ZERO_LEVEL_CANDIDATE_H_
+#define LACERTA_DRACO_ZERO_LEVEL_CANDIDATE_H_
+
+#include <cstddef>
+
+#include "draco/zero_level.h"
+#include "lacerta/mesh.h"
+#include "lacerta/status.h"
+#include "remesh/distance_model.h"
+#include "remesh/mesh_neighbors.h"
+#include "remesh/mesh_fit.h"
+
+namespace lacerta {
+
+// A mesh with its vertices fitted to the input, and the codings of it on lattices.
+class ZeroLevelCandidate {
+ public:
+  struct Coding {
+    double step = 0;
+    LatticeMesh lattice;
+    size_t bytes = 0;       // of `effort`
+    double distortion = 0;  // squared distance d_S to the input, model units, by the samples of the fit
+    CodedZeroLevel coded;
+  };
+
+  // Whether `mesh` is the input as it is: then there is nothing to fit.
+  enum class Source { kInput, kSimplified };
+
+  // target: must outlive the candidate.
+  ZeroLevelCandidate(const FitTarget& target, TriangleMesh mesh, Source source);
+
+  // Squared d_S without a lattice, by the samples of the last fit.
+  double fit_distortion() const { return fit_distortion_; }
+  size_t num_triangles() const { return mesh_.triangles.size(); }
+
+  // Fits the vertices again, with the samples that the target has now, and with regard to the bytes on lattices that add
+  // `lattice_distortion` to the squared distance. bit_weight: of the bytes against what they should weigh, 1.
+  void FitForRate(double lattice_distortion, int rounds, double bit_weight);
+
+  // On the lattice of this step, or of the finest that Draco keeps. rounds: of descent, each after looking anew.
+  StatusOr<Coding> Code(double step, int rounds, CodingEffort effort) const;
+
+  // The step that adds about `lattice_distortion`.
+  static double StepFor(double lattice_distortion);
+
+ private:
+  const FitTarget& target_;
+  TriangleMesh mesh_;
+  const Source source_;
+  bool is_small_;  // few enough triangles to be fitted and to have their lattice points chosen
+  MeshNeighbors neighbors_;
+  DistanceModel model_;  // at mesh_
+  double fit_distortion_ = 0;
+  double distortion_per_bit_ = 0;
+};
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DRACO_ZERO_LEVEL_CANDIDATE_H_

@@ -1,0 +1,185 @@
+#include "remesh/distance_model.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lacerta/surface_distance.h"
+
+namespace lacerta {
+namespace {
+
+constexpr size_t kBlockSize = 1024;
+
+// Low-discrepancy points of a triangle: the R2 sequence [Roberts 2018], folded.
+Vec3d BarycentricSample(uint64_t i) {
+  const double n = static_cast<double>(i);
+  double u = 0.5 + n * 0.7548776662466927, v = 0.5 + n * 0.5698402909980532;
+  u -= std::floor(u);
+  v -= std::floor(v);
+  if (u + v > 1) {
+    u = 1 - u;
+    v = 1 - v;
+  }
+  return {1 - u - v, u, v};
+}
+
+// A point on a mesh with the plane that it is to meet: residual = normal . (point - target).
+struct Residual {
+  uint32_t face = SurfacePoint::kNone;
+  Vec3d weights;  // barycentric
+  Vec3d normal;   // unit
+  double residual = 0;
+  double weight = 0;
+};
+
+Vec3d FaceNormal(const TriangleMesh& mesh, uint32_t face) {
+  const Triangle& t = mesh.triangles[face];
+  const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
+  return Normalized(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a));
+}
+
+// Along the way from `to` to `from`, or the face's normal where there is none.
+Vec3d DirectionBetween(const Vec3d& from, const Vec3d& to, double tiny, const TriangleMesh& mesh, uint32_t face) {
+  const Vec3d way = from - to;
+  const double length = Norm(way);
+  return length > tiny ? way * (1 / length) : FaceNormal(mesh, face);
+}
+
+// Samples of a surface with the share of the area that each stands for: at least one in every triangle with an area, so that none
+// is free to go anywhere.
+struct OwnSample {
+  uint32_t face;
+  Vec3d weights;
+  double share;
+};
+
+std::vector<OwnSample> SampleFaces(const TriangleMesh& mesh, const std::vector<uint32_t>& order, double num_samples, bool every_face) {
+  std::vector<double> areas(mesh.triangles.size());
+  double total = 0;
+  for (const uint32_t f : order) {
+    const Triangle& t = mesh.triangles[f];
+    const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
+    areas[f] = Norm(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a));
+    total += areas[f];
+  }
+  std::vector<OwnSample> result;
+  if (!(total > 0)) return result;
+  double due = 0.5;
+  uint64_t n = 0;
+  for (const uint32_t f : order) {
+    if (!(areas[f] > 0)) continue;
+    due += areas[f] / total * num_samples;
+    auto count = static_cast<size_t>(due);
+    due -= static_cast<double>(count);
+    constexpr size_t kFewest = 3;
+    if (every_face) count = std::max(count, kFewest);
+    const double share = every_face ? areas[f] / total / static_cast<double>(count) : 0;
+    for (size_t i = 0; i < count; ++i) result.push_back({f, BarycentricSample(n++), share});
+  }
+  if (!every_face) {
+    for (OwnSample& s : result) s.share = 1 / static_cast<double>(result.size());
+  }
+  return result;
+}
+
+Vec3d PointOn(const TriangleMesh& mesh, uint32_t face, const Vec3d& weights) {
+  const Triangle& t = mesh.triangles[face];
+  Vec3d p;
+  for (int k = 0; k < 3; ++k) p += Vec3Cast<double>(mesh.positions[t[k]]) * weights[k];
+  return p;
+}
+
+void Add(const std::vector<Residual>& residuals, const TriangleMesh& mesh, const MeshNeighbors& neighbors, double* mean,
+         DistanceModel* model) {
+  for (const Residual& r : residuals) {
+    if (r.face == SurfacePoint::kNone) continue;
+    *mean += r.weight * r.residual * r.residual;
+    const double half = 0.5 * r.weight;
+    const Triangle& t = mesh.triangles[r.face];
+    for (int k = 0; k < 3; ++k) {
+      model->gradient[t[k]] += r.normal * (half * r.residual * r.weights[k]);
+      model->diagonal[t[k]].AddOuter(r.normal, half * r.weights[k] * r.weights[k]);
+      const double product = r.weights[(k + 1) % 3] * r.weights[(k + 2) % 3];
+      if (product > 0) model->off_diagonal[neighbors.face_edges[r.face][k]].AddOuter(r.normal, half * product);
+    }
+  }
+}
+
+template <typename Function>
+void ForBlocks(size_t count, const Function& function) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, (count + kBlockSize - 1) / kBlockSize, 1), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t block = range.begin(); block != range.end(); ++block) {
+      function(block * kBlockSize, std::min(count, (block + 1) * kBlockSize));
+    }
+  });
+}
+
+}  // namespace
+
+Vec3d Symmetric3::Solve(const Vec3d& b) const {
+  const double c00 = yy * zz - yz * yz, c01 = xz * yz - xy * zz, c02 = xy * yz - xz * yy;
+  const double det = xx * c00 + xy * c01 + xz * c02;
+  if (!(std::fabs(det) > 0)) return {};
+  const double c11 = xx * zz - xz * xz, c12 = xy * xz - xx * yz, c22 = xx * yy - xy * xy;
+  return Vec3d{c00 * b.x + c01 * b.y + c02 * b.z, c01 * b.x + c11 * b.y + c12 * b.z, c02 * b.x + c12 * b.y + c22 * b.z} * (1 / det);
+}
+
+FitTarget::FitTarget(const TriangleMesh& mesh, size_t num_samples)
+    : mesh_(mesh), tree_(mesh), diagonal_(BoundingBoxDiagonal(mesh)) {
+  Resample(num_samples);
+}
+
+void FitTarget::Resample(size_t num_samples) {
+  if (num_samples == num_samples_) return;
+  num_samples_ = num_samples;
+  samples_.clear();
+  for (const OwnSample& s : SampleFaces(mesh_, tree_.faces_in_tree_order(), static_cast<double>(num_samples), false)) {
+    samples_.push_back(Vec3Cast<float>(PointOn(mesh_, s.face, s.weights)));
+  }
+}
+
+DistanceModel FitTarget::ModelAt(const TriangleMesh& mesh, const MeshNeighbors& neighbors) const {
+  DistanceModel model;
+  model.gradient.resize(mesh.positions.size());
+  model.diagonal.resize(mesh.positions.size());
+  model.off_diagonal.resize(neighbors.edges.size());
+  const double tiny = 1e-7 * diagonal_;
+  const TriangleTree tree(mesh);
+
+  std::vector<Residual> forward(samples_.size());
+  ForBlocks(samples_.size(), [&](size_t first, size_t last) {
+    uint32_t hint = SurfacePoint::kNone;
+    for (size_t i = first; i < last; ++i) {
+      const SurfacePoint closest = tree.ClosestPointNear(samples_[i], hint).point;
+      hint = closest.face;
+      if (closest.face == SurfacePoint::kNone) continue;
+      const Vec3d weights{closest.barycentric[0], closest.barycentric[1], closest.barycentric[2]};
+      const Vec3d p = Vec3Cast<double>(samples_[i]), q = PointOn(mesh, closest.face, weights);
+      const Vec3d normal = DirectionBetween(q, p, tiny, mesh, closest.face);
+      forward[i] = {closest.face, weights, normal, Dot(normal, q - p), 1 / static_cast<double>(samples_.size())};
+    }
+  });
+  Add(forward, mesh, neighbors, &model.forward, &model);
+
+  const std::vector<OwnSample> own = SampleFaces(mesh, tree.faces_in_tree_order(), static_cast<double>(num_samples_), true);
+  std::vector<Residual> backward(own.size());
+  ForBlocks(own.size(), [&](size_t first, size_t last) {
+    uint32_t hint = SurfacePoint::kNone;
+    for (size_t i = first; i < last; ++i) {
+      const Vec3d q = PointOn(mesh, own[i].face, own[i].weights);
+      const SurfacePoint closest = tree_.ClosestPointNear(Vec3Cast<float>(q), hint).point;
+      hint = closest.face;
+      if (closest.face == SurfacePoint::kNone) continue;
+      const Vec3d p = Vec3Cast<double>(closest.position);
+      const Vec3d normal = DirectionBetween(q, p, tiny, mesh_, closest.face);
+      backward[i] = {own[i].face, own[i].weights, normal, Dot(normal, q - p), own[i].share};
+    }
+  });
+  Add(backward, mesh, neighbors, &model.backward, &model);
+  return model;
+}
+
+}  // namespace lacerta

@@ -1,0 +1,69 @@
+// The two-sided squared distance between a mesh and the input as a quadratic form of the mesh's vertices [Hoppe et al. 1993].
+#ifndef LACERTA_REMESH_DISTANCE_MODEL_H_
+#define LACERTA_REMESH_DISTANCE_MODEL_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/triangle_tree.h"
+#include "lacerta/mesh.h"
+#include "remesh/mesh_neighbors.h"
+
+namespace lacerta {
+
+// Symmetric 3 x 3.
+struct Symmetric3 {
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+
+  void AddOuter(const Vec3d& n, double weight) {
+    const Vec3d w = n * weight;
+    xx += w.x * n.x, xy += w.x * n.y, xz += w.x * n.z, yy += w.y * n.y, yz += w.y * n.z, zz += w.z * n.z;
+  }
+  void AddScaledIdentity(double weight) { xx += weight, yy += weight, zz += weight; }
+  double Trace() const { return xx + yy + zz; }
+  Vec3d operator*(const Vec3d& v) const {
+    return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
+  }
+  // Solves this * x = b; zero where there is no solution.
+  Vec3d Solve(const Vec3d& b) const;
+};
+
+// E(x + d) = value + 2 gradient . d + d . A d for moves d of the vertices, where A has the blocks below. E is the mean of the two
+// mean squared distances, in squared model units.
+struct DistanceModel {
+  double forward = 0;   // mean squared distance from the input to the mesh
+  double backward = 0;  // and the other way
+  std::vector<Vec3d> gradient;       // #V
+  std::vector<Symmetric3> diagonal;  // #V
+  std::vector<Symmetric3> off_diagonal;  // #E: the block between the ends of an edge
+};
+
+// The input, sampled and ready to be measured against.
+class FitTarget {
+ public:
+  // mesh: with some area (SurfaceDistanceMeter::Create succeeds on it); must outlive the target. Takes about `num_samples` points,
+  // in an order of neighbours.
+  FitTarget(const TriangleMesh& mesh, size_t num_samples);
+
+  // The same with other samples, for little.
+  void Resample(size_t num_samples);
+
+  // Gauss-Newton model at `mesh`, from the target's samples and about as many on `mesh`. Every sample is held to the plane
+  // through its closest point, upright on the way to it, so that value and gradient are those of the distance itself. Runs on all
+  // cores; the same on any number of them.
+  DistanceModel ModelAt(const TriangleMesh& mesh, const MeshNeighbors& neighbors) const;
+
+  double diagonal() const { return diagonal_; }
+  const TriangleMesh& mesh() const { return mesh_; }
+
+ private:
+  const TriangleMesh& mesh_;
+  TriangleTree tree_;
+  double diagonal_ = 0;
+  size_t num_samples_ = 0;
+  std::vector<Vec3f> samples_;
+};
+
+}  // namespace lacerta
+
+#endif  // LACERTA_REMESH_DISTANCE_MODEL_H_

@@ -1,0 +1,170 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "remesh/mesh_fit.h"
+
+namespace lacerta {
+namespace {
+
+using LatticePoint = std::array<int32_t, 3>;
+
+// Coordinate descent over lattice points.
+class LatticeDescent {
+ public:
+  LatticeDescent(const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate)
+      : mesh_(mesh), model_(model), neighbors_(neighbors), rate_(rate) {
+    Vec3f low = mesh.positions[0];
+    for (const Vec3f& p : mesh.positions) {
+      for (int c = 0; c < 3; ++c) low[c] = std::min(low[c], p[c]);
+    }
+    origin_ = Vec3Cast<double>(low);
+    lattice_.reserve(mesh.positions.size());
+    moves_.resize(mesh.positions.size());
+    for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
+      const Vec3d exact = (Vec3Cast<double>(mesh.positions[v]) - origin_) * (1 / rate_.step);
+      lattice_.push_back({Round(exact.x), Round(exact.y), Round(exact.z)});
+      moves_[v] = MoveTo(v, lattice_[v]);
+    }
+  }
+
+  void Sweep() {
+    for (uint32_t v = 0; v < lattice_.size(); ++v) Improve(v);
+  }
+
+  LatticeMesh Result() const {
+    LatticeMesh result;
+    LatticePoint low = lattice_[0];
+    for (const LatticePoint& p : lattice_) {
+      for (size_t c = 0; c < 3; ++c) low[c] = std::min(low[c], p[c]);
+    }
+    result.step = static_cast<float>(rate_.step);
+    result.origin = Vec3Cast<float>(origin_ + Vec3d{1.0 * low[0], 1.0 * low[1], 1.0 * low[2]} * rate_.step);
+    for (const LatticePoint& p : lattice_) result.lattice.push_back({p[0] - low[0], p[1] - low[1], p[2] - low[2]});
+    result.triangles = mesh_.triangles;
+    return result;
+  }
+
+ private:
+  static int32_t Round(double x) { return static_cast<int32_t>(std::lround(x)); }
+
+  Vec3d MoveTo(uint32_t v, const LatticePoint& p) const {
+    return origin_ + Vec3d{1.0 * p[0], 1.0 * p[1], 1.0 * p[2]} * rate_.step - Vec3Cast<double>(mesh_.positions[v]);
+  }
+
+  void Improve(uint32_t v) {
+    // Of the model with all others as they stand: 2 slope . d + d . A d.
+    Vec3d slope = model_.gradient[v];
+    for (const uint32_t e : neighbors_.vertex_edges[v]) {
+      const auto [a, b] = neighbors_.edges[e];
+      slope += model_.off_diagonal[e] * moves_[a == v ? b : a];
+    }
+    Symmetric3 block = model_.diagonal[v];
+    block.AddScaledIdentity(1e-2 * block.Trace() + std::numeric_limits<double>::min());
+    const Vec3d optimum = -block.Solve(slope);
+    FindFlapErrors(v);
+    LatticePoint best = lattice_[v];
+    double best_cost = Cost(v, slope, best);
+    const LatticePoint current = lattice_[v];
+    const Vec3d exact = (Vec3Cast<double>(mesh_.positions[v]) + optimum - origin_) * (1 / rate_.step);
+    for (const LatticePoint& center : {current, LatticePoint{Round(exact.x), Round(exact.y), Round(exact.z)}}) {
+      for (int i = 0; i < 27; ++i) {
+        const LatticePoint p{center[0] + i % 3 - 1, center[1] + i / 3 % 3 - 1, center[2] + i / 9 - 1};
+        if (SquaredNorm(MoveTo(v, p)) > kFarthest * kFarthest * rate_.step * rate_.step) continue;
+        const double cost = Cost(v, slope, p);
+        if (cost < best_cost) {
+          best_cost = cost;
+          best = p;
+        }
+      }
+    }
+    if (best == current) return;
+    moves_[v] = MoveTo(v, best);
+    if (TurnsOver(v)) {
+      moves_[v] = MoveTo(v, current);
+    } else {
+      lattice_[v] = best;
+    }
+  }
+
+  // Errors of the flaps around v but for its own part in them, in steps.
+  void FindFlapErrors(uint32_t v) {
+    flap_errors_.clear();
+    if (!(rate_.distortion_per_bit > 0)) return;
+    for (const uint32_t i : neighbors_.vertex_flaps[v]) {
+      const auto& flap = neighbors_.flaps[i];
+      LatticePoint sum{};
+      int sign = 1;
+      for (size_t k = 0; k < 4; ++k) {
+        const int s = k < 2 ? 1 : -1;
+        if (flap[k] == v) {
+          sign = s;
+          continue;
+        }
+        for (size_t c = 0; c < 3; ++c) sum[c] += s * lattice_[flap[k]][c];
+      }
+      flap_errors_.push_back({sign * sum[0], sign * sum[1], sign * sum[2]});  // the error is +-(p + this)
+    }
+  }
+
+  double Cost(uint32_t v, const Vec3d& slope, const LatticePoint& p) const {
+    const Vec3d move = MoveTo(v, p);
+    double cost = 2 * Dot(slope, move) + Dot(move, model_.diagonal[v] * move);
+    double bits = 0;
+    for (const LatticePoint& others : flap_errors_) {
+      double r2 = 0;
+      for (size_t c = 0; c < 3; ++c) r2 += static_cast<double>(p[c] + others[c]) * static_cast<double>(p[c] + others[c]);
+      bits += rate_.BitsOfFlap(r2 * rate_.step * rate_.step);
+    }
+    return cost + rate_.distortion_per_bit * bits;
+  }
+
+  // Whether a triangle of v that has some height against the step looks elsewhere than before rounding.
+  bool TurnsOver(uint32_t v) const {
+    for (const uint32_t f : neighbors_.vertex_faces[v]) {
+      const Triangle& t = mesh_.triangles[f];
+      Vec3d old_p[3], new_p[3];
+      for (int k = 0; k < 3; ++k) {
+        old_p[k] = Vec3Cast<double>(mesh_.positions[t[k]]);
+        new_p[k] = old_p[k] + moves_[t[k]];
+      }
+      const Vec3d old_normal = Cross(old_p[1] - old_p[0], old_p[2] - old_p[0]);
+      const Vec3d new_normal = Cross(new_p[1] - new_p[0], new_p[2] - new_p[0]);
+      if (Dot(old_normal, new_normal) < 0) return true;
+    }
+    return false;
+  }
+
+  static constexpr double kFarthest = 3;  // steps from where the model was made
+
+  const TriangleMesh& mesh_;
+  const DistanceModel& model_;
+  const MeshNeighbors& neighbors_;
+  const RateModel& rate_;
+  Vec3d origin_;
+  std::vector<LatticePoint> lattice_;
+  std::vector<Vec3d> moves_;  // from mesh_ to the lattice points
+  std::vector<LatticePoint> flap_errors_;
+};
+
+}  // namespace
+
+TriangleMesh LatticeMesh::ToMesh() const {
+  TriangleMesh result;
+  result.triangles = triangles;
+  result.positions.reserve(lattice.size());
+  for (const LatticePoint& p : lattice) {
+    result.positions.push_back(
+        {origin.x + step * static_cast<float>(p[0]), origin.y + step * static_cast<float>(p[1]), origin.z + step * static_cast<float>(p[2])});
+  }
+  return result;
+}
+
+LatticeMesh FitToLattice(const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate) {
+  LatticeDescent descent(mesh, model, neighbors, rate);
+  constexpr int kSweeps = 3;
+  for (int i = 0; i < kSweeps; ++i) descent.Sweep();
+  return descent.Result();
+}
+
+}  // namespace lacerta

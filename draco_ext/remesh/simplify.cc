@@ -1,0 +1,424 @@
+#include "remesh/simplify.h"
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "remesh/quadric.h"
+
+namespace lacerta {
+namespace {
+
+constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+// Vertices of more triangles stand still: the work of a collapse grows with them.
+constexpr uint32_t kMaxRing = 128;
+// Between a triangle and what it was before the collapse.
+constexpr double kMinNormalCosine = 0.2;
+// Of the plane through a border edge that holds the border in place; a triangle's plane weighs its area. The surface lost
+// behind a border that gives way is as narrow as the error, so that the border counts for less than the surface.
+constexpr double kBorderWeight = 0.3;
+
+struct EdgeCandidate {
+  float cost;
+  uint32_t u, v;
+  uint32_t version;    // of both ends; when an end has changed since, the entry is void
+  bool may_pinch;      // even if the topology changes
+  bool operator<(const EdgeCandidate& b) const {  // for a heap with the cheapest on top
+    if (cost != b.cost) return cost > b.cost;
+    return u != b.u ? u > b.u : v > b.v;
+  }
+};
+
+enum class Effect { kKeepsTopology, kPinches, kForbidden };
+
+// What a collapse that changes the topology costs more. Handles and gaps as small as the error have to go, or the mesh would never
+// get small; the quadrics tell how small they are, but not of everything that gets lost.
+constexpr float kPinchPenalty = 4;
+
+struct Placement {
+  double cost = 0;
+  Vec3d position;
+};
+
+}  // namespace
+
+class Simplifier {
+ public:
+  Simplifier(const TriangleMesh& mesh, SimplificationSequence* sequence);
+  void Run();
+
+ private:
+  void AddQuadrics();
+  void ClassifyEdges();
+  Placement Place(uint32_t u, uint32_t v) const;
+  void Push(uint32_t u, uint32_t v);
+  void PushAround(uint32_t v);
+  std::vector<uint32_t> TrianglesOf(uint32_t v);
+  Effect EffectOf(uint32_t u, uint32_t v, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v);
+  void RemoveCoincident(uint32_t v);
+  void Kill(uint32_t triangle);
+  bool TurnsOver(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around) const;
+  void Collapse(uint32_t kept, uint32_t removed, const Vec3d& position, const std::vector<uint32_t>& around_removed, bool pinched);
+  void RetryBlocked();
+  uint32_t NextMark();
+
+  SimplificationSequence* const sequence_;
+  Vec3d center_;
+  double scale_ = 1;
+  std::vector<Vec3d> positions_;  // centered and scaled to unit size: quadrics lose their digits far from the origin
+  std::vector<Triangle> triangles_;
+  std::vector<uint8_t> dead_;  // per triangle
+  std::vector<Quadric> quadrics_;
+  // The corners 3 t + k of each vertex as a ring, so that those of two vertices are joined at once.
+  std::vector<uint32_t> next_corner_, a_corner_;
+  std::vector<uint32_t> version_, mark_;
+  std::vector<uint32_t> valence_;  // living triangles of each vertex
+  std::vector<uint8_t> on_border_;  // per vertex: of an edge that has not two triangles
+  uint32_t last_mark_ = 0;
+  uint32_t num_alive_ = 0;
+  double edge_weight_ = 0;
+  std::priority_queue<EdgeCandidate> heap_;
+  std::vector<EdgeCandidate> blocked_;
+};
+
+Simplifier::Simplifier(const TriangleMesh& mesh, SimplificationSequence* sequence)
+    : sequence_(sequence),
+      triangles_(mesh.triangles),
+      dead_(mesh.triangles.size(), 0),
+      quadrics_(mesh.positions.size()),
+      next_corner_(3 * mesh.triangles.size()),
+      a_corner_(mesh.positions.size(), kNone),
+      version_(mesh.positions.size(), 0),
+      mark_(mesh.positions.size(), 0),
+      valence_(mesh.positions.size(), 0),
+      on_border_(mesh.positions.size(), 0),
+      num_alive_(static_cast<uint32_t>(mesh.triangles.size())) {
+  Vec3d low = Vec3Cast<double>(mesh.positions[0]), high = low;
+  for (const Vec3f& p : mesh.positions) {
+    for (int c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], double{p[c]});
+      high[c] = std::max(high[c], double{p[c]});
+    }
+  }
+  const double diagonal = Norm(high - low);
+  center_ = (low + high) * 0.5;
+  if (diagonal > 0) scale_ = diagonal;
+  positions_.reserve(mesh.positions.size());
+  for (const Vec3f& p : mesh.positions) positions_.push_back((Vec3Cast<double>(p) - center_) * (1 / scale_));
+  for (uint32_t corner = 0; corner < next_corner_.size(); ++corner) {
+    uint32_t& first = a_corner_[triangles_[corner / 3][corner % 3]];
+    next_corner_[corner] = first == kNone ? corner : next_corner_[first];
+    if (first != kNone) next_corner_[first] = corner;
+    first = corner;
+    ++valence_[triangles_[corner / 3][corner % 3]];
+  }
+}
+
+void Simplifier::AddQuadrics() {
+  double area = 0;
+  for (const Triangle& t : triangles_) {
+    const Vec3d &a = positions_[t[0]], &b = positions_[t[1]], &c = positions_[t[2]];
+    const Quadric q = Quadric::OfTriangle(a, b, c);
+    for (const uint32_t v : t) quadrics_[v] += q;
+    area += Norm(Cross(b - a, c - a)) / 2;
+  }
+  // Orders flat regions by edge length; elsewhere it is nothing.
+  edge_weight_ = 1e-9 * area / static_cast<double>(triangles_.size());
+}
+
+void Simplifier::ClassifyEdges() {
+  struct Side {
+    uint32_t low, high, corner;  // the corner across
+    bool operator<(const Side& b) const { return low != b.low ? low < b.low : high != b.high ? high < b.high : corner < b.corner; }
+  };
+  std::vector<Side> sides;
+  sides.reserve(next_corner_.size());
+  for (uint32_t corner = 0; corner < next_corner_.size(); ++corner) {
+    const Triangle& t = triangles_[corner / 3];
+    const uint32_t a = t[(corner + 1) % 3], b = t[(corner + 2) % 3];
+    sides.push_back({std::min(a, b), std::max(a, b), corner});
+  }
+  std::sort(sides.begin(), sides.end());
+  for (size_t i = 0; i < sides.size();) {
+    size_t end = i + 1;
+    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
+    const uint32_t u = sides[i].low, v = sides[i].high;
+    if (end - i != 2) on_border_[u] = on_border_[v] = 1;
+    if (end - i == 1) {  // a plane through the edge, upright on the triangle
+      const Vec3d &a = positions_[u], &b = positions_[v], &c = positions_[triangles_[sides[i].corner / 3][sides[i].corner % 3]];
+      const Vec3d normal = Normalized(Cross(b - a, c - a));
+      Quadric q = Quadric::OfTriangle(a, b, a + normal * (2 * kBorderWeight * Norm(b - a)));
+      quadrics_[u] += q;
+      quadrics_[v] += q;
+    }
+    i = end;
+  }
+  for (size_t i = 0; i < sides.size(); ++i) {
+    if (i == 0 || sides[i].low != sides[i - 1].low || sides[i].high != sides[i - 1].high) Push(sides[i].low, sides[i].high);
+  }
+}
+
+Placement Simplifier::Place(uint32_t u, uint32_t v) const {
+  Quadric q = quadrics_[u];
+  q += quadrics_[v];
+  const Vec3d middle = (positions_[u] + positions_[v]) * 0.5;
+  const Eigen::Map<const Eigen::Vector3d> m(&middle.x);
+  // Where the quadric does not tell, as along a flat region or a crease, near the middle.
+  const double trace = q.quadratic.trace();
+  const double length = SquaredNorm(positions_[u] - positions_[v]);
+  Placement best;
+  best.position = middle;
+  best.cost = q.Evaluate(middle);
+  if (trace > 0) {
+    const Eigen::Matrix3d damped = q.quadratic + Eigen::Matrix3d::Identity() * (1e-3 * trace);
+    const Eigen::Vector3d gradient = q.quadratic * m + q.linear;
+    const Eigen::Vector3d x = m - damped.inverse() * gradient;
+    const Vec3d optimum{x[0], x[1], x[2]};
+    const double cost = q.Evaluate(optimum);
+    if (cost < best.cost && SquaredNorm(optimum - middle) < 4 * length) best = {cost, optimum};
+  }
+  for (const uint32_t end : {u, v}) {
+    const double cost = q.Evaluate(positions_[end]);
+    if (cost < best.cost) best = {cost, positions_[end]};
+  }
+  best.cost += edge_weight_ * length;
+  return best;
+}
+
+void Simplifier::Push(uint32_t u, uint32_t v) {
+  if (u > v) std::swap(u, v);
+  heap_.push({static_cast<float>(Place(u, v).cost), u, v, version_[u] + version_[v], false});
+}
+
+uint32_t Simplifier::NextMark() { return ++last_mark_; }
+
+// The living triangles of v; forgets the corners of the others.
+std::vector<uint32_t> Simplifier::TrianglesOf(uint32_t v) {
+  std::vector<uint32_t> result;
+  uint32_t previous = a_corner_[v];
+  if (previous == kNone) return result;
+  const uint32_t last = previous;
+  uint32_t first_kept = kNone, last_kept = kNone;
+  uint32_t corner = previous;
+  do {
+    corner = next_corner_[corner];
+    if (dead_[corner / 3]) continue;
+    if (first_kept == kNone) first_kept = corner;
+    if (last_kept != kNone) next_corner_[last_kept] = corner;
+    last_kept = corner;
+    result.push_back(corner / 3);
+  } while (corner != last);
+  if (last_kept != kNone) next_corner_[last_kept] = first_kept;
+  a_corner_[v] = last_kept;
+  return result;
+}
+
+void Simplifier::PushAround(uint32_t v) {
+  const uint32_t mark = NextMark();
+  mark_[v] = mark;
+  for (const uint32_t t : TrianglesOf(v)) {
+    for (const uint32_t w : triangles_[t]) {
+      if (mark_[w] == mark) continue;
+      mark_[w] = mark;
+      Push(v, w);
+    }
+  }
+}
+
+// The topology is kept under the link condition: u and v have no neighbours in common but those across their edge, and no two
+// triangles become one. Two borders may meet only along a border.
+Effect Simplifier::EffectOf(uint32_t u, uint32_t v, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v) {
+  const uint32_t near_u = NextMark(), across = NextMark();
+  size_t num_shared = 0;
+  bool pinches = false;
+  for (const uint32_t t : around_u) {
+    for (const uint32_t w : triangles_[t]) mark_[w] = near_u;
+  }
+  for (const uint32_t t : around_u) {
+    const Triangle& c = triangles_[t];
+    if (c[0] != v && c[1] != v && c[2] != v) continue;
+    ++num_shared;
+    for (const uint32_t w : c) {
+      if (w == u || w == v) continue;
+      if (mark_[w] == across) pinches = true;  // two triangles on the same three vertices
+      mark_[w] = across;
+    }
+  }
+  const bool only_shared_u = num_shared == around_u.size(), only_shared_v = num_shared == around_v.size();
+  // A component keeps its last triangles: how far they are from the others is not known here.
+  if (num_shared == 0 || (only_shared_u && only_shared_v)) return Effect::kForbidden;
+  if (only_shared_u || only_shared_v) pinches = true;
+  if (on_border_[u] && on_border_[v] && num_shared == 2) pinches = true;
+  for (const uint32_t t : around_v) {
+    const Triangle& c = triangles_[t];
+    if (c[0] == u || c[1] == u || c[2] == u) continue;
+    int num_across = 0;
+    for (const uint32_t w : c) {
+      if (w == v) continue;
+      if (mark_[w] == near_u) pinches = true;
+      num_across += mark_[w] == across;
+    }
+    if (num_across == 2) pinches = true;
+  }
+  return pinches ? Effect::kPinches : Effect::kKeepsTopology;
+}
+
+// Of triangles around v on the same three vertices one stays, whichever way they look.
+void Simplifier::RemoveCoincident(uint32_t v) {
+  std::vector<std::array<uint32_t, 2>> seen;  // the two other vertices
+  for (const uint32_t t : TrianglesOf(v)) {
+    std::array<uint32_t, 2> others{};
+    size_t count = 0;
+    for (const uint32_t w : triangles_[t]) {
+      if (w != v && count < 2) others[count++] = w;
+    }
+    std::sort(others.begin(), others.end());
+    if (std::find(seen.begin(), seen.end(), others) == seen.end()) {
+      seen.push_back(others);
+      continue;
+    }
+    Kill(t);
+    sequence_->removed_.push_back({t, static_cast<uint32_t>(sequence_->collapses_.size()) + 1});
+  }
+}
+
+void Simplifier::Kill(uint32_t t) {
+  dead_[t] = 1;
+  --num_alive_;
+  for (const uint32_t v : triangles_[t]) --valence_[v];
+}
+
+bool Simplifier::TurnsOver(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around) const {
+  for (const uint32_t t : around) {
+    const Triangle& c = triangles_[t];
+    if (c[0] == other || c[1] == other || c[2] == other) continue;
+    const int k = c[0] == moved ? 0 : c[1] == moved ? 1 : 2;
+    const Vec3d &a = positions_[c[(k + 1) % 3]], &b = positions_[c[(k + 2) % 3]];
+    const Vec3d before = Cross(a - positions_[moved], b - positions_[moved]);
+    const Vec3d after = Cross(a - to, b - to);
+    const double size_before = Norm(before), size_after = Norm(after);
+    const double longest = std::max({SquaredNorm(a - to), SquaredNorm(b - to), SquaredNorm(b - a)});
+    if (size_after < 1e-3 * longest && size_after < size_before) return true;  // a needle where there was a better triangle
+    if (Dot(before, after) < kMinNormalCosine * size_before * size_after) return true;
+  }
+  return false;
+}
+
+void Simplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position, const std::vector<uint32_t>& around_removed,
+                          bool pinched) {
+  for (const uint32_t t : around_removed) {
+    Triangle& c = triangles_[t];
+    if (c[0] == kept || c[1] == kept || c[2] == kept) {
+      Kill(t);
+    } else {
+      std::replace(c.begin(), c.end(), removed, kept);
+      ++valence_[kept];
+    }
+  }
+  std::swap(next_corner_[a_corner_[kept]], next_corner_[a_corner_[removed]]);  // two rings become one
+  a_corner_[removed] = kNone;
+  positions_[kept] = position;
+  quadrics_[kept] += quadrics_[removed];
+  on_border_[kept] = on_border_[kept] || on_border_[removed];
+  ++version_[kept];
+  ++version_[removed];
+  if (pinched) RemoveCoincident(kept);
+  sequence_->collapses_.push_back({removed, kept, Vec3Cast<float>(position * scale_ + center_), num_alive_});
+  PushAround(kept);
+}
+
+// What was not possible may be after changes nearby.
+void Simplifier::RetryBlocked() {
+  for (const EdgeCandidate& edge : blocked_) {
+    if (edge.version == version_[edge.u] + version_[edge.v] && a_corner_[edge.u] != kNone && a_corner_[edge.v] != kNone) heap_.push(edge);
+  }
+  blocked_.clear();
+}
+
+void Simplifier::Run() {
+  AddQuadrics();
+  ClassifyEdges();
+  uint32_t alive_at_retry = num_alive_;
+  while (true) {
+    if (heap_.empty()) {
+      if (alive_at_retry == num_alive_) break;
+      alive_at_retry = num_alive_;
+      RetryBlocked();
+      continue;
+    }
+    const EdgeCandidate edge = heap_.top();
+    heap_.pop();
+    if (edge.version != version_[edge.u] + version_[edge.v] || a_corner_[edge.u] == kNone || a_corner_[edge.v] == kNone) continue;
+    if (valence_[edge.u] + valence_[edge.v] > kMaxRing) {
+      blocked_.push_back(edge);
+      continue;
+    }
+    const std::vector<uint32_t> around_u = TrianglesOf(edge.u), around_v = TrianglesOf(edge.v);
+    const Placement placement = Place(edge.u, edge.v);
+    const Effect effect = EffectOf(edge.u, edge.v, around_u, around_v);
+    if (effect == Effect::kPinches && !edge.may_pinch) {
+      heap_.push({kPinchPenalty * edge.cost, edge.u, edge.v, edge.version, true});
+      continue;
+    }
+    if (effect == Effect::kForbidden || TurnsOver(edge.u, edge.v, placement.position, around_u) || TurnsOver(edge.v, edge.u, placement.position, around_v)) {
+      blocked_.push_back(edge);
+      continue;
+    }
+    Collapse(edge.u, edge.v, placement.position, around_v, effect == Effect::kPinches);
+    constexpr double kRetryShare = 0.9;
+    if (num_alive_ < kRetryShare * alive_at_retry) {
+      alive_at_retry = num_alive_;
+      RetryBlocked();
+    }
+  }
+}
+
+SimplificationSequence::SimplificationSequence(const TriangleMesh& mesh) : positions_(mesh.positions), triangles_(mesh.triangles) {
+  if (!mesh.triangles.empty()) Simplifier(mesh, this).Run();
+}
+
+uint32_t SimplificationSequence::fewest_triangles() const {
+  return collapses_.empty() ? num_input_triangles() : collapses_.back().num_triangles;
+}
+
+TriangleMesh SimplificationSequence::MeshWith(uint32_t num_triangles) const {
+  size_t num_collapses = 0;
+  if (num_triangles < num_input_triangles()) {
+    const auto enough = std::partition_point(collapses_.begin(), collapses_.end(),
+                                             [&](const Collapse& c) { return c.num_triangles > num_triangles; });
+    num_collapses = static_cast<size_t>(enough - collapses_.begin()) + (enough != collapses_.end());
+  }
+  std::vector<Vec3f> positions = positions_;
+  for (size_t i = 0; i < num_collapses; ++i) positions[collapses_[i].kept] = collapses_[i].position;
+  std::vector<uint32_t> becomes(positions.size());
+  for (uint32_t v = 0; v < becomes.size(); ++v) becomes[v] = v;
+  for (size_t i = num_collapses; i-- > 0;) becomes[collapses_[i].removed] = becomes[collapses_[i].kept];
+
+  std::vector<bool> is_removed(triangles_.size());
+  for (const Removal& removal : removed_) is_removed[removal.triangle] = removal.num_collapses <= num_collapses;
+
+  TriangleMesh result;
+  std::vector<uint32_t> number(positions.size(), kNone);
+  for (size_t i = 0; i < triangles_.size(); ++i) {
+    if (is_removed[i]) continue;
+    const Triangle& t = triangles_[i];
+    Triangle moved{becomes[t[0]], becomes[t[1]], becomes[t[2]]};
+    if (moved[0] == moved[1] || moved[1] == moved[2] || moved[2] == moved[0]) continue;
+    for (uint32_t& v : moved) {
+      if (number[v] == kNone) {
+        number[v] = static_cast<uint32_t>(result.positions.size());
+        result.positions.push_back(positions[v]);
+      }
+      v = number[v];
+    }
+    result.triangles.push_back(moved);
+  }
+  return result;
+}
+
+}  // namespace lacerta

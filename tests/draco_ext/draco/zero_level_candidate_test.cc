@@ -1,0 +1,77 @@
+#include "draco/zero_level_candidate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lacerta/surface_distance.h"
+#include "remesh/simplify.h"
+#include "shapes/shapes.h"
+
+namespace lacerta {
+namespace {
+
+using Source = ZeroLevelCandidate::Source;
+
+class ZeroLevelCandidateTest : public ::testing::Test {
+ protected:
+  ZeroLevelCandidateTest() : mesh_(shapes::BumpySphere(5, 0.2f)), target_(mesh_, 8000) {}
+
+  double SquaredDistance(const TriangleMesh& mesh) const {
+    const double distance = MeasureSurfaceDistance(mesh_, mesh, SurfaceDistanceOptions::RmsOnly(30000)).value().Rms();
+    return distance * distance;
+  }
+
+  TriangleMesh mesh_;
+  FitTarget target_;
+};
+
+TEST_F(ZeroLevelCandidateTest, FitsASimplifiedMesh) {
+  const TriangleMesh simplified = SimplificationSequence(mesh_).MeshWith(500);
+  const ZeroLevelCandidate candidate(target_, simplified, Source::kSimplified);
+  EXPECT_LT(candidate.fit_distortion(), 0.7 * SquaredDistance(simplified));
+  EXPECT_GT(candidate.fit_distortion(), 0.2 * SquaredDistance(simplified));
+  EXPECT_EQ(candidate.num_triangles(), simplified.triangles.size());
+}
+
+TEST_F(ZeroLevelCandidateTest, KnowsWhatACodingIs) {
+  ZeroLevelCandidate candidate(target_, SimplificationSequence(mesh_).MeshWith(500), Source::kSimplified);
+  const double added = candidate.fit_distortion();
+  candidate.FitForRate(added, 1, 1);
+  for (const CodingEffort effort : {CodingEffort::kQuick, CodingEffort::kFull}) {
+    const ZeroLevelCandidate::Coding coding = candidate.Code(ZeroLevelCandidate::StepFor(added), 2, effort).value();
+    EXPECT_EQ(coding.bytes, coding.coded.stream.size());
+    EXPECT_EQ(coding.coded.mesh.triangles.size(), candidate.num_triangles());
+    const double measured = SquaredDistance(coding.coded.mesh);
+    EXPECT_NEAR(coding.distortion, measured, 0.15 * measured);
+    EXPECT_NEAR(measured, 2 * added, 0.6 * added);
+  }
+}
+
+TEST_F(ZeroLevelCandidateTest, FinerStepsAreCloserAndLarger) {
+  ZeroLevelCandidate candidate(target_, SimplificationSequence(mesh_).MeshWith(500), Source::kSimplified);
+  const double step = ZeroLevelCandidate::StepFor(candidate.fit_distortion());
+  double last_distortion = 1;
+  size_t last_bytes = 0;
+  for (const double factor : {4.0, 2.0, 1.0, 0.5}) {
+    const ZeroLevelCandidate::Coding coding = candidate.Code(factor * step, 1, CodingEffort::kQuick).value();
+    EXPECT_LT(coding.distortion, last_distortion);
+    EXPECT_GT(coding.bytes, last_bytes);
+    last_distortion = coding.distortion;
+    last_bytes = coding.bytes;
+  }
+  EXPECT_GT(last_distortion, candidate.fit_distortion());
+}
+
+TEST_F(ZeroLevelCandidateTest, TheInputNeedsNoFit) {
+  const ZeroLevelCandidate candidate(target_, mesh_, Source::kInput);
+  EXPECT_EQ(candidate.fit_distortion(), 0);
+  const double step = 1e-3;
+  const ZeroLevelCandidate::Coding coding = candidate.Code(step, 1, CodingEffort::kQuick).value();
+  EXPECT_EQ(coding.coded.mesh.triangles.size(), mesh_.triangles.size());
+  EXPECT_LT(coding.distortion, step * step / 12);
+  EXPECT_GT(coding.distortion, step * step / 1200);
+}
+
+}  // namespace
+}  // namespace lacerta

@@ -1,0 +1,95 @@
+#include "remesh/mesh_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lacerta/surface_distance.h"
+#include "remesh/simplify.h"
+#include "shapes/shapes.h"
+
+namespace lacerta {
+namespace {
+
+double PsnrOf(const TriangleMesh& mesh, const TriangleMesh& other) {
+  const double distance = MeasureSurfaceDistance(mesh, other, SurfaceDistanceOptions::RmsOnly(30000)).value().Rms();
+  return Psnr(distance, BoundingBoxDiagonal(mesh));
+}
+
+double Bits(const TriangleMesh& mesh, const MeshNeighbors& neighbors, const RateModel& rate) {
+  double sum = 0;
+  for (const auto& [a, b, c, d] : neighbors.flaps) {
+    const Vec3f error = mesh.positions[a] + mesh.positions[b] - mesh.positions[c] - mesh.positions[d];
+    sum += rate.BitsOfFlap(static_cast<double>(SquaredNorm(error)));
+  }
+  return sum;
+}
+
+TEST(MeshFitTest, BitSlopeIsTheDerivative) {
+  const RateModel rate{0.1, 1};
+  EXPECT_EQ(rate.BitsOfFlap(0), 0);
+  for (const double r2 : {0.0, 0.01, 0.3}) {
+    const double numeric = (rate.BitsOfFlap(r2 + 1e-6) - rate.BitsOfFlap(r2)) / 1e-6;
+    EXPECT_NEAR(rate.BitSlope(r2), numeric, 1e-3 * numeric);
+  }
+  EXPECT_NEAR(rate.BitsOfFlap(400) - rate.BitsOfFlap(100), 1, 1e-3);  // a bit and a half for the three coordinates, on three flaps
+}
+
+TEST(MeshFitTest, BringsSmoothSurfacesCloser) {
+  for (const TriangleMesh& mesh : {shapes::BumpySphere(5, 0.2f), shapes::Torus(100, 50)}) {
+    TriangleMesh fitted = SimplificationSequence(mesh).MeshWith(400);
+    const double before = PsnrOf(mesh, fitted);
+    FitToSurface(FitTarget(mesh, 10000), MeshNeighbors(fitted), RateModel(), 3, &fitted);
+    EXPECT_GT(PsnrOf(mesh, fitted), before + 1.5);
+    EXPECT_LT(PsnrOf(mesh, fitted), before + 6);
+  }
+}
+
+TEST(MeshFitTest, LeavesTheBestAlone) {
+  const TriangleMesh mesh = shapes::CreasedBox(12);
+  TriangleMesh fitted = SimplificationSequence(mesh).MeshWith(12);
+  FitToSurface(FitTarget(mesh, 5000), MeshNeighbors(fitted), RateModel(), 3, &fitted);
+  EXPECT_GT(PsnrOf(mesh, fitted), 90);
+}
+
+TEST(MeshFitTest, FindsBordersAgain) {
+  const TriangleMesh mesh = shapes::GridWithBorder(40, 40, 0.2f);
+  TriangleMesh fitted = SimplificationSequence(mesh).MeshWith(100);
+  const double best = PsnrOf(mesh, fitted);
+  for (Vec3f& p : fitted.positions) p = p * 0.97f + Vec3f{0.015f, 0.015f, 0};
+  EXPECT_LT(PsnrOf(mesh, fitted), best - 5);
+  FitToSurface(FitTarget(mesh, 10000), MeshNeighbors(fitted), RateModel(), 5, &fitted);
+  EXPECT_GT(PsnrOf(mesh, fitted), best - 1);
+}
+
+TEST(MeshFitTest, PaysForSmallerPredictionErrors) {
+  const TriangleMesh mesh = shapes::BumpySphere(5, 0.2f);
+  const FitTarget target(mesh, 10000);
+  TriangleMesh plain = SimplificationSequence(mesh).MeshWith(400);
+  const MeshNeighbors neighbors(plain);
+  FitToSurface(target, neighbors, RateModel(), 2, &plain);
+  TriangleMesh cheap = plain;
+  const double distance = MeasureSurfaceDistance(mesh, plain).value().Rms();
+  const RateModel rate{4 * distance, distance * distance / 200};
+  FitToSurface(target, neighbors, rate, 3, &cheap);
+  FitToSurface(target, neighbors, RateModel(), 3, &plain);
+  EXPECT_LT(Bits(cheap, neighbors, rate), 0.95 * Bits(plain, neighbors, rate));
+  EXPECT_LT(PsnrOf(mesh, cheap), PsnrOf(mesh, plain));
+  EXPECT_GT(PsnrOf(mesh, cheap), PsnrOf(mesh, plain) - 2);
+}
+
+TEST(MeshFitTest, TurnsNothingOver) {
+  const TriangleMesh mesh = shapes::SpikySphere(4);
+  TriangleMesh fitted = SimplificationSequence(mesh).MeshWith(150);
+  const TriangleMesh before = fitted;
+  FitToSurface(FitTarget(mesh, 5000), MeshNeighbors(fitted), RateModel(), 1, &fitted);
+  for (const Triangle& t : before.triangles) {
+    const auto normal = [&](const TriangleMesh& m) {
+      return Cross(m.positions[t[1]] - m.positions[t[0]], m.positions[t[2]] - m.positions[t[0]]);
+    };
+    EXPECT_GE(Dot(normal(before), normal(fitted)), 0);
+  }
+}
+
+}  // namespace
+}  // namespace lacerta
