@@ -44,11 +44,11 @@ double ZeroLevelCandidate::StepFor(double lattice_distortion) {
   return std::sqrt(kSquaredStep * lattice_distortion);
 }
 
-void ZeroLevelCandidate::FitForRate(double lattice_distortion, int rounds, double bit_weight) {
+void ZeroLevelCandidate::FitForRate(double lattice_distortion, int rounds) {
   if (!is_small_) return;
   // D ~ 4^-b in the b bits of each coordinate: the slope of D over all bits.
   constexpr double kLn2 = 0.6931471805599453;
-  distortion_per_bit_ = bit_weight * 2 * kLn2 * lattice_distortion / (3 * static_cast<double>(mesh_.positions.size()));
+  distortion_per_bit_ = 2 * kLn2 * lattice_distortion / (3 * static_cast<double>(mesh_.positions.size()));
   if (source_ == Source::kSimplified) {
     FitToSurface(target_, neighbors_, {StepFor(lattice_distortion), distortion_per_bit_}, rounds, &mesh_);
   }

@@ -35,8 +35,8 @@ class ZeroLevelCandidate {
   size_t num_triangles() const { return mesh_.triangles.size(); }
 
   // Fits the vertices again, with the samples that the target has now, and with regard to the bytes on lattices that add
-  // `lattice_distortion` to the squared distance. bit_weight: of the bytes against what they should weigh, 1.
-  void FitForRate(double lattice_distortion, int rounds, double bit_weight);
+  // `lattice_distortion` to the squared distance.
+  void FitForRate(double lattice_distortion, int rounds);
 
   // On the lattice of this step, or of the finest that Draco keeps. rounds: of descent, each after looking anew.
   StatusOr<Coding> Code(double step, int rounds, CodingEffort effort) const;

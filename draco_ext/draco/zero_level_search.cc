@@ -67,7 +67,6 @@ class ZeroLevelSearch {
   struct Trial {
     std::shared_ptr<ZeroLevelCandidate> candidate;
     ZeroLevelCandidate::Coding coding;
-    double bit_weight = 1;
     double score = 0;  // less is better
     bool meets = false;
   };
@@ -131,7 +130,7 @@ class ZeroLevelSearch {
       trial->coding.step = candidate.StepFor((1 - kMostOfFit) * distortion_);
       return Status();
     }
-    candidate.FitForRate(distortion_ - candidate.fit_distortion(), 1, trial->bit_weight);
+    candidate.FitForRate(distortion_ - candidate.fit_distortion(), 1);
     double step = candidate.StepFor(std::max(distortion_ - candidate.fit_distortion(), (1 - kMostOfFit) * distortion_));
     constexpr int kSteps = 3;
     double db = 0;
@@ -157,7 +156,7 @@ class ZeroLevelSearch {
   Status MeetRate(Trial* trial) {
     ZeroLevelCandidate& candidate = *trial->candidate;
     const double fit = std::max(candidate.fit_distortion(), 1e-14 * Square(meter_.diagonal()));
-    candidate.FitForRate(fit, 1, trial->bit_weight);
+    candidate.FitForRate(fit, 1);
     double step = candidate.StepFor(fit);
     constexpr int kSteps = 5;
     for (int i = 0; i < kSteps; ++i) {
@@ -203,7 +202,7 @@ class ZeroLevelSearch {
     const int descent_rounds = triangles < 5000 ? 3 : 2;
     TakeSamples(8, std::max<size_t>(triangles, 2000));
     const double added = target_.is_rate ? candidate.fit_distortion() : distortion_ - candidate.fit_distortion();
-    candidate.FitForRate(std::max(added, 0.05 * candidate.fit_distortion()), kFitRounds, 1);
+    candidate.FitForRate(std::max(added, 0.05 * candidate.fit_distortion()), kFitRounds);
     double step = trial.coding.step;
     double bias = 1;  // of squared distances measured in full against those by few samples
     std::optional<ZeroLevelStream> best;

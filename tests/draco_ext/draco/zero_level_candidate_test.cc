@@ -37,7 +37,7 @@ TEST_F(ZeroLevelCandidateTest, FitsASimplifiedMesh) {
 TEST_F(ZeroLevelCandidateTest, KnowsWhatACodingIs) {
   ZeroLevelCandidate candidate(target_, SimplificationSequence(mesh_).MeshWith(500), Source::kSimplified);
   const double added = candidate.fit_distortion();
-  candidate.FitForRate(added, 1, 1);
+  candidate.FitForRate(added, 1);
   for (const CodingEffort effort : {CodingEffort::kQuick, CodingEffort::kFull}) {
     const ZeroLevelCandidate::Coding coding = candidate.Code(ZeroLevelCandidate::StepFor(added), 2, effort).value();
     EXPECT_EQ(coding.bytes, coding.coded.stream.size());
