@@ -6,6 +6,7 @@
 
 #include "draco/custom_form.h"
 #include "draco/rate_control.h"
+#include "draco/still_part.h"
 #include "draco/subdivided_input.h"
 #include "draco/zero_level_search.h"
 #include "lacerta/clean.h"
@@ -106,24 +107,27 @@ std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const Sur
 
 // The remeshed surface at the target, or a simplified mesh in stock Draco form where that is better.
 StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                    const EncodeOptions& options, const EncodeReport& report) {
+                                    const EncodeOptions& options, EncodeReport report) {
   const auto progress = [&](double share, const char* stage) {
     if (options.progress) options.progress(share, stage);
   };
   if (!options.progressive) return Unsupported("no refinement levels were asked for");
   progress(0.0, "looking at the surface");
   if (const std::optional<ChosenStream> subdivided = EncodeSubdivided(mesh, meter, target, options.mode)) {
-    EncodeReport as_it_is = report;
-    as_it_is.subdivided_input = true;
-    return FromRefinement(meter, *subdivided, as_it_is, ReasonForMiss(subdivided->measured, target));
+    report.subdivided_input = true;
+    return FromRefinement(meter, *subdivided, report, ReasonForMiss(subdivided->measured, target));
   }
   const SurfaceParts parts = SplitSurface(mesh);
   if (parts.refined.triangles.empty()) return Unsupported("no component has triangles enough to be worth remeshing");
   progress(0.02, "simplifying");
   const CollapseHistory history = Decimate(parts.refined, parts.topology, DecimateOptions());
   const InputSurface surface(parts.refined, parts.topology);
-  LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen, CodeAtTarget({surface, history, parts.source_vertex, parts.still}, meter,
-                                                                   target, options.mode, options.progress));
+  const double psnr = TypicalPsnr(target, static_cast<double>(mesh.positions.size()));
+  const StillPart still = PrepareStillPart(parts.still, parts.refined, DistanceOfPsnr(psnr, meter.diagonal()));
+  const RefinableSurface refinable{surface, history, still.mesh};
+  LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen, CodeAtTarget(refinable, meter, target, options.mode, options.progress));
+  report.parts = {parts.refined_components,       parts.still_components, still.hidden_components,
+                  parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices};
   progress(0.95, "comparing with Draco");
   LACERTA_ASSIGN_OR_RETURN(std::optional<ZeroLevelStream> simpler,
                            SimplerIfBetter(mesh, meter, target, chosen.measured));

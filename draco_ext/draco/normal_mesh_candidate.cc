@@ -1,8 +1,9 @@
 #include "draco/normal_mesh_candidate.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
-#include <unordered_map>
+#include <map>
 #include <utility>
 
 #include "common/base_tags.h"
@@ -26,14 +27,12 @@ TriangleMesh Together(TriangleMesh a, const TriangleMesh& b) {
   return a;
 }
 
-// For each base vertex the first one that is a copy of the same vertex; empty where there are no copies.
-std::vector<uint32_t> JoinedVertices(const BaseDomain& domain, const std::vector<uint32_t>& source_vertex) {
-  if (source_vertex.empty()) return {};
-  std::vector<uint32_t> joined(domain.num_vertices());
-  std::unordered_map<uint32_t, uint32_t> first;
-  for (uint32_t v = 0; v < joined.size(); ++v) {
-    const uint32_t on_input = domain.input_vertex(v);
-    joined[v] = on_input == kNone ? v : first.emplace(source_vertex[on_input], v).first->second;
+// For each base vertex the first one at the same position, where the surface was cut; empty where it nowhere was.
+std::vector<uint32_t> JoinedVertices(const std::vector<Vec3f>& positions) {
+  std::map<std::array<float, 3>, uint32_t> first;
+  std::vector<uint32_t> joined;
+  for (const Vec3f& p : positions) {
+    joined.push_back(first.emplace(std::array<float, 3>{p.x, p.y, p.z}, static_cast<uint32_t>(joined.size())).first->second);
   }
   return JoinsAnything(joined) ? joined : std::vector<uint32_t>();
 }
@@ -67,7 +66,7 @@ StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface
   for (const uint32_t v : base.vertex_map) positions.push_back(nominal.positions[v]);
   NormalMesh remesh = Pierce(input.surface, domain, positions, options);
   remesh.mesh.base_triangles = base.mesh.triangles;
-  remesh.mesh.tags.joined = JoinedVertices(domain, input.source_vertex);
+  remesh.mesh.tags.joined = JoinedVertices(positions);
   if (!input.still.triangles.empty()) {
     for (const Triangle& t : base.mesh.triangles) remesh.mesh.tags.still.push_back(is_still(t));
   }
@@ -75,11 +74,22 @@ StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface
   return NormalMeshCandidate(std::move(base), std::move(remesh));
 }
 
+// The base on a lattice of that step, or of one so much finer that the points at which cuts are closed are no others' too.
+BaseMesh NormalMeshCandidate::BaseLattice(const TriangleMesh& base, double step) const {
+  constexpr int kMostHalvings = 24;
+  BaseMesh lattice = RoundToLattice(base, static_cast<float>(step));
+  if (normal_mesh_.mesh.tags.joined.empty()) return lattice;
+  for (int i = 0; i < kMostHalvings && FirstAtSamePoint(lattice.lattice) != normal_mesh_.mesh.tags.joined; ++i) {
+    step /= 2;
+    lattice = RoundToLattice(base, static_cast<float>(step));
+  }
+  return lattice;
+}
+
 StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(double lambda, double descent_lambda, EncodeMode mode) const {
   if (mode == EncodeMode::kPaper) return CodeByModel(normal_mesh_.mesh, lambda);
   const std::vector<Vec3f> base(target_.points.begin(), target_.points.begin() + num_base_vertices());
-  const BaseMesh lattice =
-      RoundToLattice({base, normal_mesh_.mesh.base_triangles}, static_cast<float>(BaseStepForSlope(lambda)));
+  const BaseMesh lattice = BaseLattice({base, normal_mesh_.mesh.base_triangles}, BaseStepForSlope(lambda));
   DescentOptions options;
   options.lambda = descent_lambda;
   CodedSurface coded = Descend(target_, QuantizeClosedLoop(target_, lattice, StepsForSlope(target_, detail_scales_, lambda)), options);

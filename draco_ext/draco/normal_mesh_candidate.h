@@ -52,6 +52,7 @@ class NormalMeshCandidate {
   TriangleMesh RemeshedSurface() const;
 
  private:
+  BaseMesh BaseLattice(const TriangleMesh& base, double step) const;
   StatusOr<CodedSurface> CodeSurface(double lambda, double descent_lambda, EncodeMode mode) const;
   std::vector<Triangle> FinestTriangles() const;  // in the order of MeshAtLevel
 

@@ -24,13 +24,6 @@ int RungOfSize(double size) {
   return std::max(0, static_cast<int>(std::lround(std::log(size / kFirstRung) / std::log(kRungRatio))));
 }
 
-// Where a stream of that rate usually ends up, dB.
-double TypicalPsnr(const ResolvedTarget& target, double num_input_vertices) {
-  if (!target.is_rate) return target.psnr;
-  const double bits_per_vertex = 8 * target.bytes / num_input_vertices;
-  return 62 + 6 * std::log2(1 + 4 * bits_per_vertex);
-}
-
 int TypicalRung(double psnr) { return RungOfSize(200 * std::pow(2.0, (psnr - 70) / 6)); }
 
 // Levels that bring a base to at least as many vertices as the input has; chords of the remesh then cost little.
@@ -57,13 +50,14 @@ class Ladder {
       : surface_(surface), meter_(meter), target_(target), mode_(mode) {
     num_input_ = static_cast<double>(surface.surface.mesh().positions.size());
     constexpr double kLargestBase = 0.5;  // of the input's vertices
-    last_ = RungOfSize(std::max(kFirstRung, kLargestBase * num_input_));
+    first_ = RungOfSize(num_input_ - static_cast<double>(surface.history.num_collapses()));
+    last_ = std::max(first_, RungOfSize(std::max(kFirstRung, kLargestBase * num_input_)));
   }
 
   // Scores the rungs around the typical one and goes on until two on either side of the best are known to be worse: one alone
   // may be a fluke of its simplification. Returns the most promising rungs, best first; at least one.
   StatusOr<std::vector<Rung*>> FindBest(const std::function<void(double, const char*)>& progress) {
-    const int first = std::min(TypicalRung(TypicalPsnr(target_, num_input_)), last_);
+    const int first = std::clamp(TypicalRung(TypicalPsnr(target_, num_input_)), first_, last_);
     Visit({first - 1, first, first + 1});
     for (;;) {
       if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(rungs_.size())), "choosing the base mesh");
@@ -72,7 +66,7 @@ class Ladder {
       std::vector<int> next;
       if (std::isfinite(rungs_[best].score)) {
         for (const int r : {best - 2, best - 1, best + 1, best + 2}) {
-          if (r >= 0 && r <= last_ && rungs_.count(r) == 0) next.push_back(r);
+          if (r >= first_ && r <= last_ && rungs_.count(r) == 0) next.push_back(r);
         }
       } else if (highest < last_) {  // nothing reaches the target yet: larger bases
         next = {highest + 1, highest + 2};
@@ -94,7 +88,7 @@ class Ladder {
   void Visit(const std::vector<int>& numbers) {
     std::vector<std::pair<int, Rung>> made;
     for (const int r : numbers) {
-      if (r >= 0 && r <= last_) made.emplace_back(r, Rung());
+      if (r >= first_ && r <= last_) made.emplace_back(r, Rung());
     }
     tbb::parallel_for(size_t{0}, made.size(), [&](size_t i) {
       Rung& rung = made[i].second;
@@ -142,7 +136,7 @@ class Ladder {
   const ResolvedTarget& target_;
   const EncodeMode mode_;
   double num_input_;
-  int last_;
+  int first_, last_;  // rungs: of the coarsest base that the history has, and of the largest worth trying
   std::map<int, Rung> rungs_;
 };
 
@@ -153,6 +147,12 @@ bool IsBetter(const MeasuredStream& a, const MeasuredStream& b, const ResolvedTa
 }
 
 }  // namespace
+
+double TypicalPsnr(const ResolvedTarget& target, double num_input_vertices) {
+  if (!target.is_rate) return target.psnr;
+  const double bits_per_vertex = 8 * target.bytes / num_input_vertices;
+  return 62 + 6 * std::log2(1 + 4 * bits_per_vertex);
+}
 
 StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_input_vertices) {
   const auto check = [&](double low, double high, const char* what) {

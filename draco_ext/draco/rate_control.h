@@ -5,15 +5,17 @@
 #include <functional>
 
 #include "draco/candidate_search.h"
+#include "draco/refinable_surface.h"
 #include "lacerta/codec.h"
 #include "lacerta/surface_distance.h"
-#include "remesh/collapse_history.h"
-#include "remesh/input_surface.h"
 
 namespace lacerta {
 
 // Fails with kInvalidArgument where the value is not finite or out of a range that makes sense.
 StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_input_vertices);
+
+// The PSNR that is asked for, or where a stream of the rate that is asked for usually ends up, dB.
+double TypicalPsnr(const ResolvedTarget& target, double num_input_vertices);
 
 struct ChosenStream {
   MeasuredStream measured;

@@ -2,9 +2,6 @@
 #ifndef LACERTA_DRACO_REFINABLE_SURFACE_H_
 #define LACERTA_DRACO_REFINABLE_SURFACE_H_
 
-#include <cstdint>
-#include <vector>
-
 #include "lacerta/mesh.h"
 #include "remesh/collapse_history.h"
 #include "remesh/input_surface.h"
@@ -13,9 +10,8 @@ namespace lacerta {
 
 struct RefinableSurface {
   const InputSurface& surface;
-  const CollapseHistory& history;              // of surface.mesh()
-  const std::vector<uint32_t>& source_vertex;  // #V, equal for copies that were cut apart; empty: nothing was cut
-  const TriangleMesh& still;                   // an oriented manifold like the other; may be empty
+  const CollapseHistory& history;  // of surface.mesh()
+  const TriangleMesh& still;       // an oriented manifold like the other; may be empty
 };
 
 }  // namespace lacerta

@@ -258,7 +258,9 @@ StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mes
   LACERTA_ASSIGN_OR_RETURN(const bool may_be_better, search.FindSize(most_bytes));
   if (!may_be_better) return result;
   LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, search.Finish());
-  if (search.IsBetter(stream, coded.meets_target, coded.stream.size(), coded.psnr)) result = std::move(stream);
+  constexpr double kLevelsWorthBytes = 0.05, kLevelsWorthPsnr = 0.3;
+  const auto bytes_to_beat = static_cast<size_t>((1 - kLevelsWorthBytes) * static_cast<double>(coded.stream.size()));
+  if (search.IsBetter(stream, coded.meets_target, bytes_to_beat, coded.psnr + kLevelsWorthPsnr)) result = std::move(stream);
   return result;
 }
 

@@ -54,7 +54,7 @@ SurfaceParts SplitSurface(const TriangleMesh& cleaned, const SurfacePartsOptions
 
   parts.topology = TopologyWithFeatures(parts.refined);
   std::vector<uint32_t> num_copies(cleaned.positions.size(), 0);
-  for (const uint32_t v : whole.source_vertex) ++num_copies[v];
+  for (const uint32_t v : parts.source_vertex) ++num_copies[v];
   for (uint32_t v = 0; v < parts.source_vertex.size(); ++v) {
     if (num_copies[parts.source_vertex[v]] > 1) parts.topology.role[v] = CurveRole::kCorner;
   }

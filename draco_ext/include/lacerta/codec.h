@@ -62,8 +62,19 @@ struct LevelReport {
   double psnr = 0.0;    // dB
 };
 
+// The connected components of an input.
+struct PartsReport {
+  uint64_t refined_components = 0;  // remeshed, with all levels
+  uint64_t still_components = 0;    // too few triangles to be worth that: simplified, the same at every level
+  uint64_t hidden_components = 0;   // of those, left out: nearer to a refined one than the error that was asked for
+  uint64_t flipped_triangles = 0;   // turned over to agree with their neighbors
+  uint64_t cut_edges = 0;           // edges of more than two faces, or where orientations could not agree
+  uint64_t split_vertices = 0;      // by those cuts, and where parts touched in a point
+};
+
 struct EncodeReport {
   CleanReport clean;
+  PartsReport parts;  // of a remeshed input
   uint64_t input_vertices = 0;    // after cleaning
   uint64_t input_triangles = 0;
   double diagonal = 0.0;          // of the input's bounding box, model units

@@ -20,7 +20,7 @@ class CandidateSearchTest : public ::testing::Test {
         surface_(mesh_, testing::TopologyOf(mesh_)),
         history_(testing::Decimated(mesh_)),
         meter_(SurfaceDistanceMeter::Create(mesh_).value()),
-        candidate_(NormalMeshCandidate::Create({surface_, history_, {}, {}}, 60, 3).value()),
+        candidate_(NormalMeshCandidate::Create({surface_, history_, {}}, 60, 3).value()),
         remesh_psnr_(PsnrOf(candidate_.RemeshedSurface())) {}
 
   double PsnrOf(const TriangleMesh& mesh) const { return Psnr(meter_.Measure(mesh).value().Rms(), meter_.diagonal()); }

@@ -48,7 +48,7 @@ struct Coder {
   explicit Coder(const TriangleMesh& m)
       : mesh(m), surface(mesh, testing::TopologyOf(mesh)), history(testing::Decimated(mesh)), meter(SurfaceDistanceMeter::Create(mesh).value()) {}
   ChosenStream Code(const ResolvedTarget& target) const {
-    return CodeAtTarget({surface, history, {}, {}}, meter, target, EncodeMode::kDefault, {}).value();
+    return CodeAtTarget({surface, history, {}}, meter, target, EncodeMode::kDefault, {}).value();
   }
 
   TriangleMesh mesh;
@@ -73,7 +73,7 @@ TEST(CodeAtTargetTest, ReportsStages) {
     EXPECT_STRNE(stage, "");
     shares.push_back(share);
   };
-  ASSERT_TRUE(CodeAtTarget({coder.surface, coder.history, {}, {}}, coder.meter, {false, 0, 50}, EncodeMode::kDefault, progress).ok());
+  ASSERT_TRUE(CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, {false, 0, 50}, EncodeMode::kDefault, progress).ok());
   ASSERT_GE(shares.size(), 2u);
   for (size_t i = 0; i < shares.size(); ++i) {
     EXPECT_GE(shares[i], i == 0 ? 0.0 : shares[i - 1]);
