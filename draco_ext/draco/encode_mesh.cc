@@ -111,7 +111,7 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
   const auto progress = [&](double share, const char* stage) {
     if (options.progress) options.progress(share, stage);
   };
-  if (!options.progressive) return Unsupported("no refinement levels were asked for");
+  if (options.levels == LevelChoice::kNever) return Unsupported("no refinement levels were asked for");
   progress(0.0, "looking at the surface");
   if (const std::optional<ChosenStream> subdivided = EncodeSubdivided(mesh, meter, target, options.mode)) {
     report.subdivided_input = true;
@@ -129,8 +129,10 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
   report.parts = {parts.refined_components,       parts.still_components, still.hidden_components,
                   parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices};
   progress(0.95, "comparing with Draco");
-  LACERTA_ASSIGN_OR_RETURN(std::optional<ZeroLevelStream> simpler,
-                           SimplerIfBetter(mesh, meter, target, chosen.measured));
+  std::optional<ZeroLevelStream> simpler;
+  if (options.levels == LevelChoice::kWhereTheyPay) {
+    LACERTA_ASSIGN_OR_RETURN(simpler, SimplerIfBetter(mesh, meter, target, chosen.measured));
+  }
   const std::string reason = simpler ? ReasonForSimpler(*simpler, target) : ReasonForMiss(chosen.measured, target);
   if (simpler) return FromZeroLevel(std::move(*simpler), report, reason);
   return FromRefinement(meter, chosen, report, reason);

@@ -140,7 +140,9 @@ int RunPack(const PackArguments& arguments) {
   EncodeOptions options;
   options.target = Target(arguments);
   options.form = arguments.form == "custom" ? StreamForm::kCustom : StreamForm::kDraco;
-  options.progressive = arguments.levels != "0";
+  options.levels = arguments.levels == "0"        ? LevelChoice::kNever
+                   : arguments.levels == "always" ? LevelChoice::kAlways
+                                                  : LevelChoice::kWhereTheyPay;
   options.mode = arguments.mode == "paper" ? EncodeMode::kPaper : EncodeMode::kDefault;
   options.progress = progress.Callback();
   const std::string extension = Extension(arguments.output);
@@ -174,8 +176,8 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
       ->check(CLI::IsMember({"draco", "custom"}));
   pack->add_option("--mode", arguments->mode, "default, or paper: as published, open loop")
       ->check(CLI::IsMember({"default", "paper"}));
-  pack->add_option("--levels", arguments->levels, "any (default), or 0: a simplified mesh in stock Draco form, no refinement")
-      ->check(CLI::IsMember({"any", "0"}));
+  pack->add_option("--levels", arguments->levels, "any (default): refinement unless a simplified mesh in stock Draco form is clearly smaller; always; 0: never")
+      ->check(CLI::IsMember({"any", "always", "0"}));
   pack->add_flag("--json", arguments->json, "Print a report as JSON");
   pack->footer(kExitCodeHelp);
   pack->callback([arguments, exit_code] { *exit_code = RunPack(*arguments); });

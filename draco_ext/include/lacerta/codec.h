@@ -42,13 +42,18 @@ enum class EncodeMode {
   kPaper,    // [Payan & Antonini 2004] as written: open loop, model-based allocation
 };
 
+// Whether a stream has refinement levels.
+enum class LevelChoice {
+  kWhereTheyPay,  // unless a simplified mesh in stock Draco form, without levels, is clearly smaller or closer
+  kAlways,        // wherever there is a component to remesh, for the sake of streaming
+  kNever,         // a simplified mesh in stock Draco form
+};
+
 struct EncodeOptions {
   EncodeTarget target;
   StreamForm form = StreamForm::kDraco;
   EncodeMode mode = EncodeMode::kDefault;
-  // Whether the stream may have refinement levels. False: a zero-level stream, a simplified mesh in stock Draco form, which takes
-  // much less time.
-  bool progressive = true;
+  LevelChoice levels = LevelChoice::kWhereTheyPay;
   // Called now and then with the finished share (0..1) and what is being done; may be empty.
   std::function<void(double share, const char* stage)> progress;
 };

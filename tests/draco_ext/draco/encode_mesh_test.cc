@@ -33,6 +33,7 @@ EncodeOptions OptionsFor(Kind kind, double value, StreamForm form = StreamForm::
   EncodeOptions options;
   options.target = {kind, value};
   options.form = form;
+  options.levels = LevelChoice::kAlways;  // shapes as small as these hardly need any
   return options;
 }
 
@@ -149,13 +150,40 @@ TEST(EncodeMeshTest, SameBytesOnOneThreadAndOnTwo) {
   EXPECT_EQ(streams[0], streams[1]);
 }
 
+TEST(EncodeMeshTest, LevelsAreLeftOutWhereTheyDoNotPay) {
+  EncodeOptions options = OptionsFor(Kind::kPsnr, 54);
+  const EncodedMesh always = EncodeOrDie(Ring(), options);
+  options.levels = LevelChoice::kNever;
+  const EncodedMesh never = EncodeOrDie(Ring(), options);
+  options.levels = LevelChoice::kWhereTheyPay;
+  const EncodedMesh best = EncodeOrDie(Ring(), options);
+  EXPECT_TRUE(always.report.progressive);
+  EXPECT_FALSE(never.report.progressive);
+  EXPECT_EQ(best.report.progressive, 100 * never.stream.size() >= 95 * always.stream.size());
+  EXPECT_EQ(best.stream.size(), best.report.progressive ? always.stream.size() : never.stream.size());
+}
+
+TEST(EncodeMeshTest, BordersCutsAndSmallPartsAreRefinedOrStandStill) {
+  TriangleMesh mesh = shapes::BumpySphere(4, 0.2f, 0.002f);
+  const auto offset = static_cast<uint32_t>(mesh.positions.size());
+  const TriangleMesh chip = shapes::GridWithBorder(4, 4, 0.3f);
+  for (const Vec3f& p : chip.positions) mesh.positions.push_back(p + Vec3f{3, 0, 0});
+  for (const Triangle& t : chip.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  mesh.triangles.erase(mesh.triangles.begin() + 100, mesh.triangles.begin() + 107);
+  const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kPsnr, 60));
+  ASSERT_TRUE(encoded.report.progressive) << encoded.report.reason;
+  EXPECT_EQ(encoded.report.parts.refined_components, 1u);
+  EXPECT_EQ(encoded.report.parts.still_components, 1u);
+  EXPECT_EQ(encoded.report.parts.hidden_components, 0u);
+  EXPECT_GE(DecodedPsnr(mesh, encoded.stream, static_cast<int>(encoded.report.levels.size()) - 1), 60.0);
+}
+
 TEST(EncodeMeshTest, WhatCannotBeRemeshedIsAStockStreamWithTheReason) {
   const std::vector<std::pair<TriangleMesh, std::string>> cases = {
-      {shapes::Misoriented(3), "not an oriented manifold"},
-      {shapes::Pinched(), "too few triangles"},
-      {shapes::NonManifoldEdge(), "too few triangles"},
-      {shapes::Icosphere(0), "too few triangles"},
-      {{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}}}, "too few triangles"}};
+      {shapes::Pinched(), "no component has triangles enough"},
+      {shapes::NonManifoldEdge(), "no component has triangles enough"},
+      {shapes::Icosphere(0), "no component has triangles enough"},
+      {{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}}}, "no component has triangles enough"}};
   for (const auto& [mesh, reason] : cases) {
     const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kPsnr, 70));
     EXPECT_FALSE(encoded.report.progressive);

@@ -59,7 +59,7 @@ struct Coder {
 
 TEST(CodeAtTargetTest, BasesGrowWithTheQualityAskedFor) {
   const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
-  const ChosenStream coarse = coder.Code({false, 0, 40}), fine = coder.Code({false, 0, 56});
+  const ChosenStream coarse = coder.Code({false, 0, 36}), fine = coder.Code({false, 0, 60});
   EXPECT_TRUE(coarse.measured.meets_target);
   EXPECT_TRUE(fine.measured.meets_target);
   EXPECT_LE(coarse.measured.stream.decoded.num_base_vertices, fine.measured.stream.decoded.num_base_vertices);

@@ -108,7 +108,7 @@ TEST(Descend, BitsFallAndDistortionGrowsWithTheSlope) {
 
 TEST(Descend, DropsSetsThatDoNothing) {
   const SurfaceTarget target = Bumps();
-  const CodedSurface coded = DescendAt(target, 1e-7);
+  const CodedSurface coded = DescendAt(target, 1e-6);
   const LevelSteps& finest = coded.steps.back();
   EXPECT_EQ(finest.normal_step, 0);
   EXPECT_EQ(finest.tangential_step, 0);
