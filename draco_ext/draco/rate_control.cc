@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <memory>
@@ -54,8 +55,8 @@ class Ladder {
     last_ = std::max(first_, RungOfSize(std::max(kFirstRung, kLargestBase * num_input_)));
   }
 
-  // Scores the rungs around the typical one and goes on until two on either side of the best are known to be worse: one alone
-  // may be a fluke of its simplification. Returns the most promising rungs, best first; at least one.
+  // Scores the rungs around the typical one and goes on until one on either side of the best is known to be much worse, or two to be
+  // worse: one alone may be a fluke of its simplification. Returns the most promising rungs, best first; at least one.
   StatusOr<std::vector<Rung*>> FindBest(const std::function<void(double, const char*)>& progress) {
     const int first = std::clamp(TypicalRung(TypicalPsnr(target_, num_input_)), first_, last_);
     Visit({first - 1, first, first + 1});
@@ -65,8 +66,13 @@ class Ladder {
       const int best = ranking.front(), highest = rungs_.rbegin()->first;
       std::vector<int> next;
       if (std::isfinite(rungs_[best].score)) {
-        for (const int r : {best - 2, best - 1, best + 1, best + 2}) {
-          if (r >= first_ && r <= last_ && rungs_.count(r) == 0) next.push_back(r);
+        for (const int r : {best - 1, best + 1}) {
+          const int beyond = 2 * r - best;
+          if (IsMissing(r)) {
+            next.push_back(r);
+          } else if (IsMissing(beyond) && rungs_.count(r) > 0 && rungs_[r].score < rungs_[best].score + MuchWorse()) {
+            next.push_back(beyond);
+          }
         }
       } else if (highest < last_) {  // nothing reaches the target yet: larger bases
         next = {highest + 1, highest + 2};
@@ -84,6 +90,23 @@ class Ladder {
   }
 
  private:
+  bool IsMissing(int r) const { return r >= first_ && r <= last_ && rungs_.count(r) == 0; }
+
+  // In the unit of scores. Neighbouring rungs are rarely further from the smooth curve of all rungs.
+  double MuchWorse() const { return target_.is_rate ? 0.3 : 0.03; }
+
+  // Where to begin the search at a rung: where the nearest one that was scored ended.
+  std::optional<double> StartOf(int number) const {
+    std::optional<double> start;
+    int least = std::numeric_limits<int>::max();
+    for (const auto& [r, rung] : rungs_) {
+      if (!std::isfinite(rung.score) || std::abs(r - number) >= least) continue;
+      least = std::abs(r - number);
+      start = rung.search->start();
+    }
+    return start;
+  }
+
   // Makes and scores the given rungs, in parallel; those off the ladder are left out. A base that fails costs only itself.
   void Visit(const std::vector<int>& numbers) {
     std::vector<std::pair<int, Rung>> made;
@@ -114,6 +137,7 @@ class Ladder {
     }
     rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_);
     constexpr double kHeadroom = 0.5;  // dB that quantization takes at least
+    if (const std::optional<double> start = StartOf(number)) rung->search->BeginAt(*start);
     if (!target_.is_rate && rung->remesh_psnr < target_.psnr + kHeadroom) return Status();
     LACERTA_ASSIGN_OR_RETURN(rung->score, rung->search->Score());
     return Status();
