@@ -21,9 +21,11 @@ constexpr double kUsualPsnr = 70;        // where to begin when only the rate is
 // What counts as met: [psnr, psnr + 0.3) and (0.98, 1] of the bytes, with a margin for the noise of the measure.
 constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.24;
 constexpr double kBytesSlack = 0.018;
+// What is aimed at lies inside of that, so that jumps of the curve hardly ever skip it.
+constexpr double kPsnrAim = 0.06, kBytesAim = 0.005;
 constexpr int kScoreTries = 2;
 constexpr double kNearEnough = 0.4;  // dB: typical slopes will do
-constexpr int kMeetTries = 16;
+constexpr int kMeetTries = 10;
 
 }  // namespace
 
@@ -34,7 +36,9 @@ CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double re
   start_ = std::log(kFirstLambda * distance * distance);
 }
 
-double CandidateSearch::Goal() const { return target_.is_rate ? std::log(target_.bytes) : target_.psnr - offset_; }
+double CandidateSearch::Goal() const {
+  return target_.is_rate ? std::log(target_.bytes) - kBytesAim : target_.psnr + kPsnrAim - offset_.value_or(0);
+}
 
 double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogBytesPerLogLambda : kPsnrPerLogLambda; }
 
@@ -42,8 +46,14 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda) {
   Attempt attempt;
   LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code(std::exp(kept_steps_.value_or(log_lambda)), std::exp(log_lambda), mode_));
   const double remesh_distance = DistanceOfPsnr(remesh_psnr_, meter_.diagonal());
-  attempt.psnr = Psnr(std::sqrt(attempt.stream.plane_distortion + remesh_distance * remesh_distance), meter_.diagonal());
-  attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : attempt.psnr;
+  const double estimate = Psnr(std::sqrt(attempt.stream.plane_distortion + remesh_distance * remesh_distance), meter_.diagonal());
+  if (!offset_) {
+    constexpr uint64_t kRoughSamples = 50'000;
+    LACERTA_ASSIGN_OR_RETURN(const double rough, MeasurePsnr(attempt, kRoughSamples));
+    offset_ = rough - estimate;
+  }
+  attempt.psnr = estimate + *offset_;
+  attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : estimate;
   values_[log_lambda] = attempt.value;
   return attempt;
 }
@@ -119,9 +129,9 @@ StatusOr<double> CandidateSearch::Score() {
 }
 
 StatusOr<MeasuredStream> CandidateSearch::Meet() {
-  constexpr uint64_t kRoughSamples = 50'000, kSamples = 200'000;
-  const double low = target_.is_rate ? -kBytesSlack : kPsnrMargin, high = target_.is_rate ? 0 : kPsnrSlack;  // beyond the goal
-  const auto excess = [&](const Attempt& a) { return target_.is_rate ? a.value - Goal() : a.psnr - target_.psnr; };
+  constexpr uint64_t kSamples = 200'000;
+  const double low = target_.is_rate ? -kBytesSlack : kPsnrMargin, high = target_.is_rate ? 0 : kPsnrSlack;  // beyond the target
+  const auto excess = [&](const Attempt& a) { return target_.is_rate ? a.value - std::log(target_.bytes) : a.psnr - target_.psnr; };
   const auto keeps_promise = [&](const Attempt& a) { return target_.is_rate ? excess(a) <= 0 : excess(a) >= 0; };
   const auto is_met = [&](const Attempt& a) { return excess(a) >= low && excess(a) <= high; };
   std::optional<Attempt> best, unmeasured;
@@ -132,12 +142,7 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
   for (int i = 0; i < kMeetTries && !CannotReach() && !(best && is_met(*best)); ++i) {
     LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(NextGuess()));
     if (!target_.is_rate) {
-      if (i == 0) {
-        LACERTA_ASSIGN_OR_RETURN(const double rough, MeasurePsnr(attempt, kRoughSamples));
-        offset_ = rough - attempt.value;
-      }
-      const double beyond = attempt.value - Goal();
-      if (beyond < low || beyond > high) {
+      if (!is_met(attempt)) {  // by the estimate
         unmeasured = std::move(attempt);
         KeepStepsAtJump();
         continue;

@@ -53,7 +53,7 @@ class CandidateSearch {
   };
   StatusOr<Attempt> Try(double log_lambda);
   StatusOr<double> MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const;
-  double Goal() const;
+  double Goal() const;  // the value aimed at
   double TypicalSlope() const;
   // The attempts next to the goal: the coarsest that is not under it and the finest that is under it; values fall as lambda
   // grows, but for noise. Either may be missing.
@@ -73,7 +73,7 @@ class CandidateSearch {
   const EncodeMode mode_;
   double start_;                     // ln(lambda) to begin with
   std::map<double, double> values_;  // of the attempts so far, by ln(lambda): ln(bytes) at a rate, else estimated dB
-  double offset_ = 0;                // dB that a measure showed more than the estimate, which hardly depends on lambda
+  std::optional<double> offset_;     // dB that a measure showed more than the estimate, which hardly depends on lambda
   // Where set, the steps stay at this ln(lambda), and what is tried is the slope of the descent alone.
   std::optional<double> kept_steps_;
 };
