@@ -25,7 +25,7 @@ constexpr double kBytesSlack = 0.018;
 constexpr double kPsnrAim = 0.06, kBytesAim = 0.005;
 constexpr int kScoreTries = 2;
 constexpr double kNearEnough = 0.4;  // dB: typical slopes will do
-constexpr int kMeetTries = 10;
+constexpr int kMeetTries = 16, kEstimatedTries = 6;
 
 }  // namespace
 
@@ -106,9 +106,10 @@ void CandidateSearch::KeepStepsAtJump() {
 
 // A finer slope no longer raises the PSNR: the remesh itself is the limit.
 bool CandidateSearch::CannotReach() const {
-  if (target_.is_rate || values_.size() < 3) return false;
+  if (target_.is_rate || kept_steps_ || values_.size() < 3) return false;
   const auto first = values_.begin(), second = std::next(first);
-  return first->second < Goal() && (first->second - second->second) < 0.15 * (second->first - first->first);
+  constexpr double kApart = 0.1;  // nearer, and noise decides
+  return first->second < Goal() && second->first - first->first > kApart && (first->second - second->second) < 0.15 * (second->first - first->first);
 }
 
 StatusOr<double> CandidateSearch::Score() {
@@ -139,16 +140,28 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
     const bool nearer = best && std::fabs(excess(attempt)) < std::fabs(excess(*best));
     if (!best || (keeps_promise(attempt) == keeps_promise(*best) ? nearer : keeps_promise(attempt))) best = std::move(attempt);
   };
+  double last = start_;
   for (int i = 0; i < kMeetTries && !CannotReach() && !(best && is_met(*best)); ++i) {
-    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(NextGuess()));
+    const bool by_estimate = i < kEstimatedTries;
+    double log_lambda = NextGuess();
+    if (i == kEstimatedTries && !target_.is_rate) {  // estimates will not do: from here on values are measured
+      log_lambda = start_ = last;
+      values_.clear();
+      kept_steps_.reset();
+      offset_ = 0;
+    }
+    last = log_lambda;
+    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(log_lambda));
     if (!target_.is_rate) {
-      if (!is_met(attempt)) {  // by the estimate
+      if (by_estimate && !is_met(attempt)) {
         unmeasured = std::move(attempt);
         KeepStepsAtJump();
         continue;
       }
       LACERTA_ASSIGN_OR_RETURN(attempt.psnr, MeasurePsnr(attempt, kSamples));
-      offset_ = attempt.psnr - attempt.value;
+      if (by_estimate) offset_ = attempt.psnr - attempt.value;
+      if (!by_estimate) attempt.value = values_[log_lambda] = attempt.psnr;
+      unmeasured.reset();
     }
     consider(std::move(attempt));
     KeepStepsAtJump();

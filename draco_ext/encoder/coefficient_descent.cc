@@ -153,12 +153,10 @@ std::vector<SetBits> CountBits(const SurfaceTarget& target, CodedSurface coded) 
 void DropIdleSets(const SurfaceTarget& target, double lambda, std::vector<Vec3f> positions, CodedSurface* coded) {
   double distortion = PlaneDistortion(target, positions);
   const auto try_without = [&](float LevelSteps::*step, std::vector<int32_t> QuantizedLevel::*set, size_t i, double bits) {
-    // Coefficients pay for themselves one by one; where they are not few there is no need to look.
-    constexpr size_t kFew = 16;  // of so many at most one
+    if (bits == 0) return;
     std::vector<int32_t>& values = coded->levels[i].*set;
-    const size_t num_coded = values.size() - static_cast<size_t>(std::count(values.begin(), values.end(), 0));
-    if (bits == 0 || num_coded * kFew > values.size()) return;
-    if (num_coded > 0) {
+    const bool is_silent = std::all_of(values.begin(), values.end(), [](int32_t q) { return q == 0; });
+    if (!is_silent) {
       std::vector<int32_t> kept(values.size(), 0);
       values.swap(kept);
       std::vector<Vec3f> without(positions.begin(), positions.begin() + target.topologies[i].num_vertices);
