@@ -8,7 +8,11 @@ namespace lacerta {
 
 void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const LevelSteps& steps,
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
-  const std::vector<Vec3f> midpoints = PredictMidpoints(coarse, table, *positions);
+  AppendMidpoints(coarse, PredictMidpoints(coarse, table, *positions), steps, quantized, positions);
+}
+
+void AppendMidpoints(const Topology& coarse, const std::vector<Vec3f>& midpoints, const LevelSteps& steps,
+                     const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
   std::vector<Vec3f> details(midpoints.size());  // apart from `positions`, on which the frames depend
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     const int32_t q1 = quantized.tangential[size_t{2} * e], q2 = quantized.tangential[size_t{2} * e + 1];

@@ -20,6 +20,10 @@ namespace lacerta {
 void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const LevelSteps& steps,
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions);
 
+// The same where `midpoints`, PredictMidpoints of the positions, is at hand.
+void AppendMidpoints(const Topology& coarse, const std::vector<Vec3f>& midpoints, const LevelSteps& steps,
+                     const QuantizedLevel& quantized, std::vector<Vec3f>* positions);
+
 }  // namespace lacerta
 
 #endif  // LACERTA_DECODER_SYNTHESIS_H_

@@ -21,8 +21,11 @@ constexpr double kUsualPsnr = 70;        // where to begin when only the rate is
 // What counts as met: [psnr, psnr + 0.3) and (0.98, 1] of the bytes, with a margin for the noise of the measure.
 constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.24;
 constexpr double kBytesSlack = 0.018;
+// What is aimed at lies inside of that, so that jumps of the curve hardly ever skip it.
+constexpr double kPsnrAim = 0.06, kBytesAim = 0.005;
 constexpr int kScoreTries = 2;
-constexpr int kMeetTries = 16;
+constexpr double kNearEnough = 0.4;  // dB: typical slopes will do
+constexpr int kMeetTries = 16, kEstimatedTries = 6;
 
 }  // namespace
 
@@ -33,24 +36,32 @@ CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double re
   start_ = std::log(kFirstLambda * distance * distance);
 }
 
-double CandidateSearch::Goal() const { return target_.is_rate ? std::log(target_.bytes) : target_.psnr; }
+double CandidateSearch::Goal() const {
+  return target_.is_rate ? std::log(target_.bytes) - kBytesAim : target_.psnr + kPsnrAim - offset_.value_or(0);
+}
 
 double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogBytesPerLogLambda : kPsnrPerLogLambda; }
 
-StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, Distortion distortion) {
+StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda) {
   Attempt attempt;
   LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code(std::exp(kept_steps_.value_or(log_lambda)), std::exp(log_lambda), mode_));
-  if (distortion == Distortion::kMeasured) {
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance,
-                             meter_.Measure(attempt.stream.FinestMesh(), SurfaceDistanceOptions::RmsOnly()));
-    attempt.psnr = Psnr(distance.Rms(), meter_.diagonal());
-  } else {
-    const double remesh_distance = DistanceOfPsnr(remesh_psnr_, meter_.diagonal());
-    attempt.psnr = Psnr(std::sqrt(attempt.stream.plane_distortion + remesh_distance * remesh_distance), meter_.diagonal());
+  const double remesh_distance = DistanceOfPsnr(remesh_psnr_, meter_.diagonal());
+  const double estimate = Psnr(std::sqrt(attempt.stream.plane_distortion + remesh_distance * remesh_distance), meter_.diagonal());
+  if (!offset_) {
+    constexpr uint64_t kRoughSamples = 50'000;
+    LACERTA_ASSIGN_OR_RETURN(const double rough, MeasurePsnr(attempt, kRoughSamples));
+    offset_ = rough - estimate;
   }
-  attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : attempt.psnr;
+  attempt.psnr = estimate + *offset_;
+  attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : estimate;
   values_[log_lambda] = attempt.value;
   return attempt;
+}
+
+StatusOr<double> CandidateSearch::MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const {
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance,
+                           meter_.Measure(attempt.stream.FinestMesh(), SurfaceDistanceOptions::RmsOnly(num_samples)));
+  return Psnr(distance.Rms(), meter_.diagonal());
 }
 
 CandidateSearch::Bracket CandidateSearch::AroundGoal() const {
@@ -95,9 +106,10 @@ void CandidateSearch::KeepStepsAtJump() {
 
 // A finer slope no longer raises the PSNR: the remesh itself is the limit.
 bool CandidateSearch::CannotReach() const {
-  if (target_.is_rate || values_.size() < 3) return false;
+  if (target_.is_rate || kept_steps_ || values_.size() < 3) return false;
   const auto first = values_.begin(), second = std::next(first);
-  return first->second < Goal() && (first->second - second->second) < 0.15 * (second->first - first->first);
+  constexpr double kApart = 0.1;  // nearer, and noise decides
+  return first->second < Goal() && second->first - first->first > kApart && (first->second - second->second) < 0.15 * (second->first - first->first);
 }
 
 StatusOr<double> CandidateSearch::Score() {
@@ -105,30 +117,58 @@ StatusOr<double> CandidateSearch::Score() {
   double least_miss = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kScoreTries; ++i) {
     const double log_lambda = NextGuess();
-    LACERTA_ASSIGN_OR_RETURN(const Attempt attempt, Try(log_lambda, Distortion::kEstimated));
+    LACERTA_ASSIGN_OR_RETURN(const Attempt attempt, Try(log_lambda));
     const double miss = Goal() - attempt.value;
     if (std::fabs(miss) >= least_miss) continue;
     least_miss = std::fabs(miss);
     start_ = log_lambda + miss / TypicalSlope();
     const double log_bytes = std::log(static_cast<double>(attempt.stream.size()));
     score = target_.is_rate ? -(attempt.psnr + miss / kLogBytesPerDecibel) : log_bytes + kLogBytesPerDecibel * miss;
+    if (least_miss < kNearEnough * (target_.is_rate ? -kLogBytesPerDecibel : 1.0)) break;
   }
-  values_.clear();  // estimates: a good start, not to be mixed with what will be measured
   return score;
 }
 
 StatusOr<MeasuredStream> CandidateSearch::Meet() {
-  const double low = target_.is_rate ? Goal() - kBytesSlack : Goal() + kPsnrMargin;
-  const double high = target_.is_rate ? Goal() : Goal() + kPsnrSlack;
-  const auto keeps_promise = [&](const Attempt& a) { return target_.is_rate ? a.value <= high : a.value >= target_.psnr; };
-  std::optional<Attempt> best;
-  for (int i = 0; i < kMeetTries && !CannotReach(); ++i) {
-    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(NextGuess(), target_.is_rate ? Distortion::kEstimated : Distortion::kMeasured));
-    const bool met = attempt.value >= low && attempt.value <= high;
-    const bool nearer = best && std::fabs(attempt.value - Goal()) < std::fabs(best->value - Goal());
+  constexpr uint64_t kSamples = 200'000;
+  const double low = target_.is_rate ? -kBytesSlack : kPsnrMargin, high = target_.is_rate ? 0 : kPsnrSlack;  // beyond the target
+  const auto excess = [&](const Attempt& a) { return target_.is_rate ? a.value - std::log(target_.bytes) : a.psnr - target_.psnr; };
+  const auto keeps_promise = [&](const Attempt& a) { return target_.is_rate ? excess(a) <= 0 : excess(a) >= 0; };
+  const auto is_met = [&](const Attempt& a) { return excess(a) >= low && excess(a) <= high; };
+  std::optional<Attempt> best, unmeasured;
+  const auto consider = [&](Attempt attempt) {
+    const bool nearer = best && std::fabs(excess(attempt)) < std::fabs(excess(*best));
     if (!best || (keeps_promise(attempt) == keeps_promise(*best) ? nearer : keeps_promise(attempt))) best = std::move(attempt);
-    if (met) break;
+  };
+  double last = start_;
+  for (int i = 0; i < kMeetTries && !CannotReach() && !(best && is_met(*best)); ++i) {
+    const bool by_estimate = i < kEstimatedTries;
+    double log_lambda = NextGuess();
+    if (i == kEstimatedTries && !target_.is_rate) {  // estimates will not do: from here on values are measured
+      log_lambda = start_ = last;
+      values_.clear();
+      kept_steps_.reset();
+      offset_ = 0;
+    }
+    last = log_lambda;
+    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(log_lambda));
+    if (!target_.is_rate) {
+      if (by_estimate && !is_met(attempt)) {
+        unmeasured = std::move(attempt);
+        KeepStepsAtJump();
+        continue;
+      }
+      LACERTA_ASSIGN_OR_RETURN(attempt.psnr, MeasurePsnr(attempt, kSamples));
+      if (by_estimate) offset_ = attempt.psnr - attempt.value;
+      if (!by_estimate) attempt.value = values_[log_lambda] = attempt.psnr;
+      unmeasured.reset();
+    }
+    consider(std::move(attempt));
     KeepStepsAtJump();
+  }
+  if (unmeasured && !(best && is_met(*best))) {  // out of tries: the last one may be the nearest
+    LACERTA_ASSIGN_OR_RETURN(unmeasured->psnr, MeasurePsnr(*unmeasured, kSamples));
+    consider(std::move(*unmeasured));
   }
   MeasuredStream result;
   result.meets_target = keeps_promise(*best);

@@ -33,23 +33,27 @@ class CandidateSearch {
   CandidateSearch(const NormalMeshCandidate& candidate, double remesh_psnr, const SurfaceDistanceMeter& meter,
                   const ResolvedTarget& target, EncodeMode mode);
 
-  // Codes near the target with a few attempts and extrapolates to it: ln(bytes) at the PSNR, or -PSNR at the bytes. Smaller is
+  // Codes near the target with an attempt or two and extrapolates to it: ln(bytes) at the PSNR, or -PSNR at the bytes. Smaller is
   // better.
   StatusOr<double> Score();
+
+  // ln(lambda) that is thought to meet the target; another search of the same surface may begin there.
+  double start() const { return start_; }
+  void BeginAt(double start) { start_ = start; }
 
   // Codes until the target is met: bytes within 2 % and never over, or a PSNR less than 0.3 dB over and never under. Where that
   // fails, the attempt that comes nearest, with meets_target telling whether it keeps to the side promised.
   StatusOr<MeasuredStream> Meet();
 
  private:
-  enum class Distortion { kEstimated, kMeasured };
   struct Attempt {
     CodedStream stream;
-    double psnr = 0;
-    double value = 0;  // in the unit of the target: ln(bytes) or dB
+    double psnr = 0;   // dB: estimated, or measured once it was
+    double value = 0;  // as in values_
   };
-  StatusOr<Attempt> Try(double log_lambda, Distortion distortion);
-  double Goal() const;
+  StatusOr<Attempt> Try(double log_lambda);
+  StatusOr<double> MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const;
+  double Goal() const;  // the value aimed at
   double TypicalSlope() const;
   // The attempts next to the goal: the coarsest that is not under it and the finest that is under it; values fall as lambda
   // grows, but for noise. Either may be missing.
@@ -68,7 +72,8 @@ class CandidateSearch {
   const ResolvedTarget target_;
   const EncodeMode mode_;
   double start_;                     // ln(lambda) to begin with
-  std::map<double, double> values_;  // value by ln(lambda) of the attempts so far
+  std::map<double, double> values_;  // of the attempts so far, by ln(lambda): ln(bytes) at a rate, else estimated dB
+  std::optional<double> offset_;     // dB that a measure showed more than the estimate, which hardly depends on lambda
   // Where set, the steps stay at this ln(lambda), and what is tried is the slope of the descent alone.
   std::optional<double> kept_steps_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <memory>
@@ -37,12 +38,16 @@ int LevelsFor(double num_base_vertices, double num_input_vertices) {
 
 // A base size that was tried.
 struct Rung {
-  std::unique_ptr<NormalMeshCandidate> candidate;
+  std::unique_ptr<NormalMeshCandidate> candidate;  // null once it was let go of
   std::unique_ptr<CandidateSearch> search;
   Status status;  // why there is no candidate, if so
   double remesh_psnr = 0;
   double score = std::numeric_limits<double>::infinity();  // of CandidateSearch::Score; infinite: cannot reach the target
+  double start = 0;                                        // of CandidateSearch::start, where there is a score
 };
+
+// Candidates that are taken to the target at a time, and in all. More are not kept: each is as large as the input.
+constexpr size_t kAtATime = 2, kMost = 4;
 
 class Ladder {
  public:
@@ -54,27 +59,33 @@ class Ladder {
     last_ = std::max(first_, RungOfSize(std::max(kFirstRung, kLargestBase * num_input_)));
   }
 
-  // Scores the rungs around the typical one and goes on until two on either side of the best are known to be worse: one alone
-  // may be a fluke of its simplification. Returns the most promising rungs, best first; at least one.
-  StatusOr<std::vector<Rung*>> FindBest(const std::function<void(double, const char*)>& progress) {
+  // Scores the rungs around the typical one and goes on until one on either side of the best is known to be much worse, or two to be
+  // worse: one alone may be a fluke of its simplification. Returns the most promising rungs, best first; at least one.
+  StatusOr<std::vector<int>> FindBest(const std::function<void(double, const char*)>& progress) {
     const int first = std::clamp(TypicalRung(TypicalPsnr(target_, num_input_)), first_, last_);
     Visit({first - 1, first, first + 1});
     for (;;) {
       if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(rungs_.size())), "choosing the base mesh");
       const std::vector<int> ranking = Ranking();
+      for (size_t i = kAtATime; i < ranking.size(); ++i) LetGo(&rungs_[ranking[i]]);
       const int best = ranking.front(), highest = rungs_.rbegin()->first;
       std::vector<int> next;
       if (std::isfinite(rungs_[best].score)) {
-        for (const int r : {best - 2, best - 1, best + 1, best + 2}) {
-          if (r >= first_ && r <= last_ && rungs_.count(r) == 0) next.push_back(r);
+        for (const int r : {best - 1, best + 1}) {
+          const int beyond = 2 * r - best;
+          if (IsMissing(r)) {
+            next.push_back(r);
+          } else if (IsMissing(beyond) && rungs_.count(r) > 0 && rungs_[r].score < rungs_[best].score + MuchWorse()) {
+            next.push_back(beyond);
+          }
         }
       } else if (highest < last_) {  // nothing reaches the target yet: larger bases
         next = {highest + 1, highest + 2};
       }
       if (next.empty()) {
-        std::vector<Rung*> result;
+        std::vector<int> result;
         for (const int r : ranking) {
-          if (rungs_[r].status.ok()) result.push_back(&rungs_[r]);
+          if (rungs_[r].status.ok()) result.push_back(r);
         }
         if (result.empty()) return rungs_[best].status.WithContext("no base mesh can be coded");
         return result;
@@ -83,7 +94,36 @@ class Ladder {
     }
   }
 
+  // In the unit of scores. Neighbouring rungs are rarely further from the smooth curve of all rungs.
+  double MuchWorse() const { return target_.is_rate ? 0.3 : 0.03; }
+
+  // A rung of FindBest, made anew where it was let go of.
+  StatusOr<const Rung*> Get(int number) {
+    Rung& rung = rungs_.at(number);
+    if (!rung.candidate) LACERTA_RETURN_IF_ERROR(Make(number, &rung));
+    return &rung;
+  }
+
  private:
+  static void LetGo(Rung* rung) {
+    rung->search.reset();
+    rung->candidate.reset();
+  }
+
+  bool IsMissing(int r) const { return r >= first_ && r <= last_ && rungs_.count(r) == 0; }
+
+  // Where to begin the search at a rung: where the nearest one that was scored ended.
+  std::optional<double> StartOf(int number) const {
+    std::optional<double> start;
+    int least = std::numeric_limits<int>::max();
+    for (const auto& [r, rung] : rungs_) {
+      if (!std::isfinite(rung.score) || std::abs(r - number) >= least) continue;
+      least = std::abs(r - number);
+      start = rung.start;
+    }
+    return start;
+  }
+
   // Makes and scores the given rungs, in parallel; those off the ladder are left out. A base that fails costs only itself.
   void Visit(const std::vector<int>& numbers) {
     std::vector<std::pair<int, Rung>> made;
@@ -114,8 +154,10 @@ class Ladder {
     }
     rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_);
     constexpr double kHeadroom = 0.5;  // dB that quantization takes at least
+    if (const std::optional<double> start = StartOf(number)) rung->search->BeginAt(*start);
     if (!target_.is_rate && rung->remesh_psnr < target_.psnr + kHeadroom) return Status();
     LACERTA_ASSIGN_OR_RETURN(rung->score, rung->search->Score());
+    rung->start = rung->search->start();
     return Status();
   }
 
@@ -180,20 +222,23 @@ StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_
 StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
                                     const std::function<void(double, const char*)>& progress) {
   Ladder ladder(surface, meter, target, mode);
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<Rung*> rungs, ladder.FindBest(progress));
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<int> rungs, ladder.FindBest(progress));
   if (progress) progress(0.8, "meeting the target");
   // Scores are estimates: two candidates at a time are taken to the target until one meets it, and the better of them is kept.
-  constexpr size_t kAtATime = 2, kMost = 4;
   std::optional<ChosenStream> best;
   for (size_t first = 0; first < std::min(kMost, rungs.size()); first += kAtATime) {
     const size_t count = std::min(kAtATime, rungs.size() - first);
+    std::vector<const Rung*> tried;
+    for (size_t i = 0; i < count; ++i) {
+      LACERTA_ASSIGN_OR_RETURN(const Rung* const rung, ladder.Get(rungs[first + i]));
+      tried.push_back(rung);
+    }
     std::vector<StatusOr<MeasuredStream>> met(count, InternalError("not tried"));
-    tbb::parallel_for(size_t{0}, count, [&](size_t i) { met[i] = rungs[first + i]->search->Meet(); });
+    tbb::parallel_for(size_t{0}, count, [&](size_t i) { met[i] = tried[i]->search->Meet(); });
     for (size_t i = 0; i < count; ++i) {
       LACERTA_ASSIGN_OR_RETURN(MeasuredStream measured, std::move(met[i]));
-      const Rung& rung = *rungs[first + i];
       if (best && !IsBetter(measured, best->measured, target)) continue;
-      best = {std::move(measured), rung.remesh_psnr, NormalShare(rung.candidate->normal_mesh())};
+      best = {std::move(measured), tried[i]->remesh_psnr, NormalShare(tried[i]->candidate->normal_mesh())};
     }
     if (best->measured.meets_target) break;
   }

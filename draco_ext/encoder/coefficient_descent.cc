@@ -1,14 +1,15 @@
 #include "encoder/coefficient_descent.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
 #include "common/base_tags.h"
 #include "common/coefficient_coding.h"
 #include "common/local_frame.h"
 #include "decoder/synthesis.h"
 #include "encoder/bit_cost.h"
+#include "encoder/local_model.h"
 #include "encoder/quantizer.h"
 
 namespace lacerta {
@@ -19,106 +20,16 @@ Vec3f LatticePoint(const BaseMesh& base, uint32_t v) {
   return Vec3f{static_cast<float>(q[0]), static_cast<float>(q[1]), static_cast<float>(q[2])} * base.step;
 }
 
-// How a vertex moves the level that it is looked at on: itself and its twins with weight 1, and the midpoints of the next level.
-class Reach {
- public:
-  Reach(const SurfaceTarget& target, int level)
-      : next_twin_(target.next_twin),
-        spread_(level < target.num_levels() ? &target.spreads[level] : nullptr),
-        first_midpoint_(target.topologies[level].num_vertices) {}
-
-  template <typename Visitor>
-  void Visit(uint32_t v, const Visitor& visit) const {
-    for (uint32_t twin = v; twin != kNone; twin = next_twin_.empty() ? kNone : next_twin_[twin]) {
-      visit(twin, 1.0f);
-      if (spread_ == nullptr) continue;
-      for (uint32_t k = spread_->first[twin]; k < spread_->first[twin + 1]; ++k) {
-        visit(first_midpoint_ + spread_->edges[k], spread_->weights[k]);
-      }
-    }
-  }
-
- private:
-  const std::vector<uint32_t>& next_twin_;
-  const StencilSpread* spread_;
-  uint32_t first_midpoint_;
-};
-
-// The metric of SurfaceTarget at a vertex, applied to an offset. Sliding along the surface costs a share of what leaving it
-// costs: little where the vertex was found by piercing, so that vertices just do not drift; much where it was not, since the
-// surface is not flat there in the sense that planes presume. Where vertices are kept, what suits tangential steps of twice the
-// normal one.
-Vec3f Weigh(const SurfaceTarget& target, size_t v, const Vec3f& offset) {
-  constexpr float kPiercedSlideCost = 0.05f, kOtherSlideCost = 0.15f, kKeptSlideCost = 0.25f, kCurveSlideCost = 0.5f;
-  const bool on_curve = target.topologies.back().role[v] != CurveRole::kSmooth;
-  const size_t num_base = target.points.size() - target.piercing.size();
-  const bool pierced = v < num_base || target.piercing[v - num_base] == PiercingKind::kNormal;
-  const float slide_cost = on_curve                ? kCurveSlideCost
-                           : target.keeps_vertices ? kKeptSlideCost
-                           : pierced               ? kPiercedSlideCost
-                                                   : kOtherSlideCost;
-  const Vec3f& n = target.normals[v];
-  return offset * slide_cost + n * ((1 - slide_cost) * Dot(offset, n));
+std::vector<Vec3f> LatticePoints(const BaseMesh& base) {
+  std::vector<Vec3f> points;
+  for (uint32_t v = 0; v < base.lattice.size(); ++v) points.push_back(LatticePoint(base, v));
+  return points;
 }
 
-// Half the gradient of the distortion with respect to the positions of the finest level, brought down to `level`.
-std::vector<Vec3f> GradientAt(const SurfaceTarget& target, const std::vector<Vec3f>& positions, int level) {
-  const std::vector<float>& mass = target.masses.back();
-  std::vector<Vec3f> gradient(positions.size());
-  for (size_t v = 0; v < positions.size(); ++v) {
-    gradient[v] = Weigh(target, v, positions[v] - target.points[v]) * mass[v];
-  }
-  for (int l = target.num_levels() - 1; l >= level; --l) {
-    const uint32_t num_vertices = target.topologies[l].num_vertices;
-    const StencilSpread& spread = target.spreads[l];
-    for (uint32_t v = 0; v < num_vertices; ++v) {
-      Vec3f sum;
-      for (uint32_t k = spread.first[v]; k < spread.first[v + 1]; ++k) {
-        sum += gradient[num_vertices + spread.edges[k]] * spread.weights[k];
-      }
-      gradient[v] += sum;
-    }
-    gradient.resize(num_vertices);
-  }
-  return gradient;
+// Appends the vertices of level `level` (1 .. L) to the positions of the coarser ones.
+void AppendLevel(const SurfaceTarget& target, const CodedSurface& coded, int level, std::vector<Vec3f>* positions) {
+  SynthesizeLevel(target.topologies[level - 1], target.stencils, coded.steps[level - 1], coded.levels[level - 1], positions);
 }
-
-// The local quadratic model of the distortion on one level, kept up to date while coefficients move.
-class LocalModel {
- public:
-  LocalModel(const SurfaceTarget& target, const std::vector<Vec3f>& positions, int level)
-      : target_(target),
-        reach_(target, level),
-        masses_(target.masses[std::min(level + 1, target.num_levels())]),
-        gradient_(GradientAt(target, positions, std::min(level + 1, target.num_levels()))) {}
-
-  // Distortion as a function of a move of vertex v by `length` along `direction`: slope * 2 length + curvature * length^2.
-  struct Parabola {
-    float slope = 0, curvature = 0;
-    float Rise(float length) const { return length * (2 * slope + curvature * length); }
-    float Lowest() const { return curvature > 0 ? -slope / curvature : 0.0f; }
-  };
-  Parabola Along(uint32_t v, const Vec3f& direction) const {
-    Parabola p;
-    reach_.Visit(v, [&](uint32_t u, float weight) {
-      p.slope += weight * Dot(gradient_[u], direction);
-      p.curvature += weight * weight * masses_[u] * Dot(direction, Weigh(target_, u, direction));
-    });
-    return p;
-  }
-
-  void Move(uint32_t v, const Vec3f& displacement) {
-    reach_.Visit(v, [&](uint32_t u, float weight) {
-      gradient_[u] += Weigh(target_, u, displacement) * (masses_[u] * weight);
-    });
-  }
-
- private:
-  const SurfaceTarget& target_;
-  const Reach reach_;
-  const std::vector<float>& masses_;
-  std::vector<Vec3f> gradient_;
-};
 
 // The quantized value that lowers distortion + lambda * bits most: near the bottom of the parabola, or nearer to zero. The
 // parabola holds for moves up to `reach`.
@@ -141,8 +52,8 @@ int32_t BestValue(const LocalModel::Parabola& parabola, int32_t current, float s
   return best;
 }
 
-void DescendBase(const SurfaceTarget& target, const std::vector<Vec3f>& positions, BaseMesh* base) {
-  LocalModel model(target, positions, 0);
+void DescendBase(const SurfaceTarget& target, std::vector<Vec3f> gradient, BaseMesh* base) {
+  LocalModel model(target, 0, std::move(gradient));
   const std::vector<uint32_t>& next_twin = target.next_twin;
   std::vector<bool> follows(base->lattice.size(), false);  // another vertex, which was moved already
   const BaseMesh before = *base;
@@ -165,14 +76,14 @@ void DescendBase(const SurfaceTarget& target, const std::vector<Vec3f>& position
 }
 
 // Chooses the details of level `level` (1 .. L) and advances the state of the entropy coder over them.
-void DescendLevel(const SurfaceTarget& target, const std::vector<Vec3f>& positions, int level, double lambda,
-                  CodedSurface* coded, CodingState* state) {
+//   positions  of the coarser level; predicted: PredictMidpoints there
+//   gradient   for LocalModel
+void DescendLevel(const SurfaceTarget& target, int level, const std::vector<Vec3f>& positions, const std::vector<Vec3f>& predicted,
+                  std::vector<Vec3f> gradient, double lambda, CodedSurface* coded, CodingState* state) {
   const Topology& coarse = target.topologies[level - 1];
-  std::vector<Vec3f> coarse_positions(positions.begin(), positions.begin() + coarse.num_vertices);
-  const std::vector<LocalFrame> frames =
-      ComputeLocalFrames(coarse, coarse_positions, PredictMidpoints(coarse, target.stencils, coarse_positions));
   const LevelSteps& steps = coded->steps[level - 1];
-  LocalModel model(target, positions, level);
+  const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
+  LocalModel model(target, level, std::move(gradient));
   BitMeter meter;
   const auto choose = [&](CoefficientKind kind, uint32_t edge, SetModels& models, const CoefficientContext& context,
                           int32_t* value) {
@@ -191,6 +102,30 @@ void DescendLevel(const SurfaceTarget& target, const std::vector<Vec3f>& positio
     *value = best;
   };
   CodeLevel(coarse, steps, state, &coded->levels[level - 1], &meter, choose);
+}
+
+// One pass over all levels, coarse to fine. The gradient is computed once; what the coarser levels have moved since then comes to it
+// with the lumped masses.
+//   positions  Synthesize of `coded`, on entry and on return
+void DescendOnce(const SurfaceTarget& target, const DescentOptions& options, CodedSurface* coded, std::vector<Vec3f>* positions) {
+  std::vector<std::vector<Vec3f>> gradients = Gradients(target, *positions);
+  if (options.move_base) DescendBase(target, gradients[LevelAhead(target, 0)], &coded->base);
+  const std::vector<Vec3f> before = std::exchange(*positions, LatticePoints(coded->base));
+  CodingState state;
+  for (int level = 1; level <= target.num_levels(); ++level) {
+    const Topology& coarse = target.topologies[level - 1];
+    const std::vector<Vec3f> predicted = PredictMidpoints(coarse, target.stencils, *positions);
+    const int ahead = LevelAhead(target, level);
+    std::vector<Vec3f> present = *positions;  // on the level ahead, with the coefficients so far
+    AppendMidpoints(coarse, predicted, coded->steps[level - 1], coded->levels[level - 1], &present);
+    if (ahead > level) AppendLevel(target, *coded, ahead, &present);
+    std::vector<Vec3f> gradient = gradients[ahead];
+    for (size_t v = 0; v < gradient.size(); ++v) {
+      gradient[v] += Weigh(target, v, present[v] - before[v]) * target.masses[ahead][v];
+    }
+    DescendLevel(target, level, *positions, predicted, std::move(gradient), options.lambda, coded, &state);
+    AppendMidpoints(coarse, predicted, coded->steps[level - 1], coded->levels[level - 1], positions);
+  }
 }
 
 // Bits of the two sets of every level.
@@ -214,17 +149,27 @@ std::vector<SetBits> CountBits(const SurfaceTarget& target, CodedSurface coded) 
 }
 
 // Leaves out whole sets, finest first, where that saves more rate than it costs distortion: zeros are cheap, not free.
-void DropIdleSets(const SurfaceTarget& target, double lambda, CodedSurface* coded) {
-  double distortion = PlaneDistortion(target, Synthesize(target, *coded));
-  const auto try_without = [&](float LevelSteps::*step, std::vector<int32_t> QuantizedLevel::*values, size_t i, double bits) {
+//   positions  Synthesize of `coded`
+void DropIdleSets(const SurfaceTarget& target, double lambda, std::vector<Vec3f> positions, CodedSurface* coded) {
+  double distortion = PlaneDistortion(target, positions);
+  const auto try_without = [&](float LevelSteps::*step, std::vector<int32_t> QuantizedLevel::*set, size_t i, double bits) {
     if (bits == 0) return;
-    CodedSurface without = *coded;
-    without.steps[i].*step = 0;
-    std::fill((without.levels[i].*values).begin(), (without.levels[i].*values).end(), 0);
-    const double raised = PlaneDistortion(target, Synthesize(target, without));
-    if (raised - distortion > lambda * bits) return;
-    distortion = raised;
-    *coded = std::move(without);
+    std::vector<int32_t>& values = coded->levels[i].*set;
+    const bool is_silent = std::all_of(values.begin(), values.end(), [](int32_t q) { return q == 0; });
+    if (!is_silent) {
+      std::vector<int32_t> kept(values.size(), 0);
+      values.swap(kept);
+      std::vector<Vec3f> without(positions.begin(), positions.begin() + target.topologies[i].num_vertices);
+      for (int level = static_cast<int>(i) + 1; level <= target.num_levels(); ++level) AppendLevel(target, *coded, level, &without);
+      const double raised = PlaneDistortion(target, without);
+      if (raised - distortion > lambda * bits) {
+        values.swap(kept);
+        return;
+      }
+      distortion = raised;
+      positions = std::move(without);
+    }
+    coded->steps[i].*step = 0;
   };
   const std::vector<SetBits> bits = CountBits(target, *coded);
   for (size_t i = bits.size(); i-- > 0;) {
@@ -236,12 +181,9 @@ void DropIdleSets(const SurfaceTarget& target, double lambda, CodedSurface* code
 }  // namespace
 
 std::vector<Vec3f> Synthesize(const SurfaceTarget& target, const CodedSurface& coded) {
-  std::vector<Vec3f> positions;
+  std::vector<Vec3f> positions = LatticePoints(coded.base);
   positions.reserve(target.points.size());
-  for (uint32_t v = 0; v < coded.base.lattice.size(); ++v) positions.push_back(LatticePoint(coded.base, v));
-  for (int level = 1; level <= target.num_levels(); ++level) {
-    SynthesizeLevel(target.topologies[level - 1], target.stencils, coded.steps[level - 1], coded.levels[level - 1], &positions);
-  }
+  for (int level = 1; level <= target.num_levels(); ++level) AppendLevel(target, coded, level, &positions);
   return positions;
 }
 
@@ -256,8 +198,7 @@ double PlaneDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& po
 
 CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& base, const std::vector<LevelSteps>& steps) {
   CodedSurface coded{base, steps, {}};
-  std::vector<Vec3f> positions;
-  for (uint32_t v = 0; v < base.lattice.size(); ++v) positions.push_back(LatticePoint(base, v));
+  std::vector<Vec3f> positions = LatticePoints(base);
   for (int level = 1; level <= target.num_levels(); ++level) {
     const Topology& coarse = target.topologies[level - 1];
     const LevelSteps& step = steps[level - 1];
@@ -284,21 +225,16 @@ CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& bas
       quantized.tangential[2 * e + 1] = RoundToStep(local.y, step.tangential_step);
       quantized.normal[e] = RoundToStep(local.z, step.normal_step);
     }
-    SynthesizeLevel(coarse, target.stencils, step, quantized, &positions);
+    AppendMidpoints(coarse, predicted, step, quantized, &positions);
     coded.levels.push_back(std::move(quantized));
   }
   return coded;
 }
 
 CodedSurface Descend(const SurfaceTarget& target, CodedSurface coded, const DescentOptions& options) {
-  for (int pass = 0; pass < options.passes; ++pass) {
-    if (options.move_base) DescendBase(target, Synthesize(target, coded), &coded.base);
-    CodingState state;
-    for (int level = 1; level <= target.num_levels(); ++level) {
-      DescendLevel(target, Synthesize(target, coded), level, options.lambda, &coded, &state);
-    }
-  }
-  if (!target.keeps_vertices) DropIdleSets(target, options.lambda, &coded);  // by distance to the surface alone
+  std::vector<Vec3f> positions = Synthesize(target, coded);
+  for (int pass = 0; pass < options.passes; ++pass) DescendOnce(target, options, &coded, &positions);
+  if (!target.keeps_vertices) DropIdleSets(target, options.lambda, std::move(positions), &coded);  // by distance to the surface alone
   return coded;
 }
 

@@ -52,6 +52,15 @@ std::vector<uint32_t> ChainTwins(const std::vector<uint32_t>& joined, const std:
   return next;
 }
 
+// The finest level is not refined: its tables of edges, the largest of all, can go.
+Topology WithoutEdges(Topology finest) {
+  Topology t;
+  t.num_vertices = finest.num_vertices;
+  t.triangles = std::move(finest.triangles);
+  t.role = std::move(finest.role);
+  return t;
+}
+
 }  // namespace
 
 StencilSpread SpreadStencils(const Topology& topology, const StencilTable& table) {
@@ -87,6 +96,7 @@ SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
     masses[level - 1] = LumpMasses(topologies[level - 1], masses[level]);
   }
   std::vector<uint32_t> next_twin = ChainTwins(mesh.mesh.tags.joined, topologies);
+  topologies.back() = WithoutEdges(std::move(topologies.back()));
   return {std::move(topologies), std::move(stencils), std::move(spreads), mesh.mesh.positions,
           mesh.surface_normals,  std::move(masses),   mesh.piercing,      std::move(next_twin),
           mesh.keeps_vertices};

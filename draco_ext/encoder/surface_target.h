@@ -28,7 +28,7 @@ StencilSpread SpreadStencils(const Topology& topology, const StencilTable& table
 
 // Everything about a normal mesh that does not change while its coefficients are chosen.
 struct SurfaceTarget {
-  std::vector<Topology> topologies;           // of levels 0 .. L (the finest included)
+  std::vector<Topology> topologies;           // of levels 0 .. L, the finest one without its edges
   StencilTable stencils;
   std::vector<StencilSpread> spreads;         // of levels 0 .. L-1
   std::vector<Vec3f> points;                  // #V of the finest level: points of the input

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -44,12 +45,14 @@ std::vector<SurfacePoint> SpreadPoints(const TriangleMesh& mesh, double count) {
   return points;
 }
 
+// hint: the face of the remesh nearest to the point before, for the next one as well.
 Sample SampleAt(const InputSurface& surface, const SurfacePoint& point, const TriangleMesh& remesh, const TriangleTree& tree,
-                const std::vector<Vec3f>& normals) {
+                const std::vector<Vec3f>& normals, uint32_t* hint) {
   constexpr double kLeastCosine = 0.5;  // between the two surfaces: else the nearest triangle is on another sheet
   const Vec3d weights{point.barycentric[0], point.barycentric[1], point.barycentric[2]};
   const Vec3f position = surface.PositionAt(point.face, weights);
-  const SurfacePoint nearest = tree.ClosestPoint(position).point;
+  const SurfacePoint nearest = tree.ClosestPointNear(position, *hint).point;
+  *hint = nearest.face;
   if (nearest.face == kNone) return {};
   Sample sample;
   sample.corners = remesh.triangles[nearest.face];
@@ -136,8 +139,12 @@ void FitToInput(const InputSurface& surface, const SurfaceFitOptions& options, N
   const std::vector<SurfacePoint> points =
       SpreadPoints(surface.mesh(), options.samples_per_vertex * static_cast<double>(finest.positions.size()));
   std::vector<Sample> samples(points.size());
-  tbb::parallel_for(size_t{0}, points.size(), [&](size_t i) {
-    samples[i] = SampleAt(surface, points[i], finest, tree, remesh->surface_normals);
+  constexpr size_t kBlockSize = 512;  // fixed, so that hints do not depend on the threads
+  tbb::parallel_for(size_t{0}, (points.size() + kBlockSize - 1) / kBlockSize, [&](size_t block) {
+    uint32_t hint = kNone;
+    for (size_t i = block * kBlockSize; i < std::min(points.size(), (block + 1) * kBlockSize); ++i) {
+      samples[i] = SampleAt(surface, points[i], finest, tree, remesh->surface_normals, &hint);
+    }
   });
   const std::vector<double> moves = Solve(NormalEquations(samples, options.stiffness), mesh.positions.size(), options.iterations);
   const std::vector<uint8_t> pinned = CopiedVertices(mesh.tags);
