@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "draco_ext/remesh/remeshing.h"
@@ -77,6 +78,24 @@ TEST(FitToInput, KeepsTheCopiesAtACutInPlace) {
   }
   EXPECT_GT(moved, 50u);
   for (const uint32_t v : {11, 40, 30, 59}) EXPECT_EQ(after.mesh.positions[v], before.mesh.positions[v]) << v;
+}
+
+TEST(FitToInput, TurnsNoTriangleOver) {
+  const auto turned_area = [](const NormalMesh& mesh) {
+    double area = 0;
+    const TriangleMesh fine = MeshAtLevel(mesh.mesh, mesh.mesh.num_levels).value();
+    for (const Triangle& t : fine.triangles) {
+      const Vec3f normal = mesh.surface_normals[t[0]] + mesh.surface_normals[t[1]] + mesh.surface_normals[t[2]];
+      const Vec3f &a = fine.positions[t[0]], &b = fine.positions[t[1]], &c = fine.positions[t[2]];
+      area += std::max(0.0f, -Dot(Cross(b - a, c - a), Normalized(normal)));
+    }
+    return area;
+  };
+  for (const TriangleMesh& input : {shapes::SpikySphere(5, 40, 0.8f), shapes::BumpySphere(5, 0.2f, 0.03f)}) {
+    const NormalMesh pierced = Remesh(input, 100, 3), fitted = Fitted(input, pierced);
+    EXPECT_LE(turned_area(fitted), turned_area(pierced) * 1.001);
+    EXPECT_LT(Rms(input, fitted), Rms(input, pierced));
+  }
 }
 
 TEST(FitToInput, DoesNotDependOnTheNumberOfThreads) {
