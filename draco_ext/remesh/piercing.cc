@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/butterfly.h"
 #include "common/local_frame.h"
@@ -31,6 +32,13 @@ double SquaredChartLength(const ChartPoint& d) { return -(d.x * d.y + d.y * d.z 
 // Twice the signed area in units of the base face; positive for counterclockwise triangles.
 double ChartArea(const ChartPoint& a, const ChartPoint& b, const ChartPoint& c) { return Dot(a, Cross(b, c)); }
 
+// A coarse face with the midpoints of its sides: corners, then midpoints, as kChildren numbers them.
+struct FaceSites {
+  const Site* site[6];
+  ChartPoint q[6];  // in the chart of the base face
+  double area;      // of the face in the chart
+};
+
 // One refinement step.
 class LevelPiercer {
  public:
@@ -44,22 +52,28 @@ class LevelPiercer {
  private:
   uint32_t BaseFace(uint32_t face) const { return face >> (2 * level_); }
   struct Expectation;
-  struct FaceSites;
   Site FindSite(uint32_t edge, PiercingKind first_kind) const;
   Site PiercedSite(uint32_t edge) const;
   Site ClosestSite(uint32_t edge, const Vec3f& position) const;
   Site ParametricSite(const Expectation& expected) const;
+  Site SiteOf(const DomainPoint& parameter, PiercingKind kind) const;
+  Site CurveSite(uint32_t edge, double share) const;
   Site FindCurveSite(uint32_t edge, PiercingKind first_kind) const;
   bool Confirms(uint32_t edge, const ChartPoint& middle, double edge_length, Site* site) const;
   Expectation Expect(uint32_t edge) const;
   Site SiteAt(const SurfacePoint& point, PiercingKind kind) const;
   bool IsSound(uint32_t edge, const Expectation& expected, Site* site) const;
   FaceSites SitesOf(uint32_t face, const std::vector<Site>& midpoints) const;
+  bool FoldsInChart(const FaceSites& sites, const int (&child)[3]) const;
   bool Folds(const FaceSites& sites, const int (&child)[3]) const;
   bool FoldsAround(uint32_t edge, const std::vector<Site>& midpoints) const;
   std::vector<uint8_t> FoldedMidpoints(const std::vector<Site>& midpoints) const;
   Vec3f NeighborMean(uint32_t edge, const std::vector<Site>& midpoints) const;
   void Relax(std::vector<Site>* midpoints) const;
+  double TurnedOverAround(uint32_t edge, const std::vector<Site>& midpoints) const;
+  std::vector<uint32_t> TurnedOverMidpoints(const std::vector<Site>& midpoints) const;
+  std::vector<Site> PlacesNear(uint32_t edge, const Site& site, double step) const;
+  void TurnBack(std::vector<Site>* midpoints) const;
 
   const InputSurface& surface_;
   const BaseDomain& domain_;
@@ -85,32 +99,34 @@ bool LevelPiercer::Confirms(uint32_t edge, const ChartPoint& middle, double edge
   return site->parameter_distance <= options_.max_parameter_distance;
 }
 
-// On a curve: where the plane across the edge at the predicted midpoint meets the input's curve, so that nothing is left to
-// code along the edge, else halfway in the parametrization.
-Site LevelPiercer::FindCurveSite(uint32_t edge, PiercingKind first_kind) const {
+// The point of a curve at a share of an edge in the parametrization.
+Site LevelPiercer::CurveSite(uint32_t edge, double share) const {
   const auto& [a, b] = coarse_.edges[edge];
   const uint32_t center = BaseFace(coarse_.edge_faces[edge][0]);
   const ChartPoint qa = *domain_.ToChart(center, sites_[a].parameter), qb = *domain_.ToChart(center, sites_[b].parameter);
-  const auto site_at = [&](double share) {
-    const DomainPoint parameter{center, ClampWeights(qa * (1 - share) + qb * share)};
-    const DomainPoint on_input = domain_.ToInput(parameter);
-    return Site{surface_.PositionAt(on_input.face, on_input.barycentric),
-                surface_.NormalAt(on_input.face, on_input.barycentric), parameter, PiercingKind::kCurve, std::fabs(share - 0.5)};
-  };
+  const DomainPoint parameter{center, ClampWeights(qa * (1 - share) + qb * share)};
+  Site site = SiteOf(parameter, PiercingKind::kCurve);
+  site.parameter_distance = std::fabs(share - 0.5);
+  return site;
+}
+
+// On a curve: where the plane across the edge at the predicted midpoint meets the input's curve, so that nothing is left to
+// code along the edge, else halfway in the parametrization.
+Site LevelPiercer::FindCurveSite(uint32_t edge, PiercingKind first_kind) const {
   if (first_kind == PiercingKind::kNormal) {
     const Vec3f along = frames_[edge].tangent1;
     const auto beyond = [&](const Site& site) { return Dot(site.position - predicted_[edge], along) > 0; };
     constexpr double kFarthest = 0.35;  // from the middle, in lengths of the edge
     double low = 0.5 - kFarthest, high = 0.5 + kFarthest;
-    if (!beyond(site_at(low)) && beyond(site_at(high))) {
+    if (!beyond(CurveSite(edge, low)) && beyond(CurveSite(edge, high))) {
       for (int i = 0; i < 24; ++i) {
         const double middle = 0.5 * (low + high);
-        (beyond(site_at(middle)) ? high : low) = middle;
+        (beyond(CurveSite(edge, middle)) ? high : low) = middle;
       }
-      return site_at(low);
+      return CurveSite(edge, low);
     }
   }
-  return site_at(0.5);
+  return CurveSite(edge, 0.5);
 }
 
 // What an edge expects of a site for its midpoint.
@@ -150,11 +166,15 @@ Site LevelPiercer::ClosestSite(uint32_t edge, const Vec3f& position) const {
   return ParametricSite(expected);
 }
 
-Site LevelPiercer::ParametricSite(const Expectation& expected) const {
-  const DomainPoint parameter = *domain_.FromChart(expected.center, expected.middle);
+// The point of the input at a point of the domain.
+Site LevelPiercer::SiteOf(const DomainPoint& parameter, PiercingKind kind) const {
   const DomainPoint on_input = domain_.ToInput(parameter);
   return {surface_.PositionAt(on_input.face, on_input.barycentric), surface_.NormalAt(on_input.face, on_input.barycentric),
-          parameter, PiercingKind::kParametric, 0};
+          parameter, kind, 0};
+}
+
+Site LevelPiercer::ParametricSite(const Expectation& expected) const {
+  return SiteOf(*domain_.FromChart(expected.center, expected.middle), PiercingKind::kParametric);
 }
 
 // The nearest sound hit of the normal line, else the closest point.
@@ -199,13 +219,7 @@ Vec3f LevelPiercer::NeighborMean(uint32_t edge, const std::vector<Site>& midpoin
 // The four children of a coarse face: corners, then midpoints (0, 1, 2: corners; 3 + k: midpoint of the edge opposite to k).
 constexpr int kChildren[4][3] = {{0, 5, 4}, {1, 3, 5}, {2, 4, 3}, {3, 4, 5}};
 
-struct LevelPiercer::FaceSites {
-  const Site* site[6];
-  ChartPoint q[6];  // in the chart of the base face
-  double area;      // of the face in the chart
-};
-
-LevelPiercer::FaceSites LevelPiercer::SitesOf(uint32_t face, const std::vector<Site>& midpoints) const {
+FaceSites LevelPiercer::SitesOf(uint32_t face, const std::vector<Site>& midpoints) const {
   FaceSites s;
   for (int k = 0; k < 3; ++k) {
     s.site[k] = &sites_[coarse_.triangles[face][k]];
@@ -216,10 +230,18 @@ LevelPiercer::FaceSites LevelPiercer::SitesOf(uint32_t face, const std::vector<S
   return s;
 }
 
-bool LevelPiercer::Folds(const FaceSites& s, const int (&child)[3]) const {
-  if (ChartArea(s.q[child[0]], s.q[child[1]], s.q[child[2]]) < options_.min_child_area * s.area) return true;
+bool LevelPiercer::FoldsInChart(const FaceSites& s, const int (&child)[3]) const {
+  return ChartArea(s.q[child[0]], s.q[child[1]], s.q[child[2]]) < options_.min_child_area * s.area;
+}
+
+// Twice the area of a fine triangle seen along the normals of the input at its corners; below zero where it is turned over.
+float FacingArea(const FaceSites& s, const int (&child)[3]) {
   const Site &a = *s.site[child[0]], &b = *s.site[child[1]], &c = *s.site[child[2]];
-  return Dot(Cross(b.position - a.position, c.position - a.position), a.normal + b.normal + c.normal) <= 0;
+  return Dot(Cross(b.position - a.position, c.position - a.position), Normalized(a.normal + b.normal + c.normal));
+}
+
+bool LevelPiercer::Folds(const FaceSites& s, const int (&child)[3]) const {
+  return FoldsInChart(s, child) || FacingArea(s, child) <= 0;
 }
 
 bool LevelPiercer::FoldsAround(uint32_t edge, const std::vector<Site>& midpoints) const {
@@ -279,6 +301,86 @@ void LevelPiercer::Relax(std::vector<Site>* midpoints) const {
   }
 }
 
+// How much area is turned over among the fine triangles at a midpoint; infinite where one folds in the parametrization.
+double LevelPiercer::TurnedOverAround(uint32_t edge, const std::vector<Site>& midpoints) const {
+  double area = 0;
+  for (const uint32_t face : coarse_.edge_faces[edge]) {
+    if (face == kNone) continue;
+    const int midpoint = 3 + EdgeCorner(coarse_, face, edge);
+    const FaceSites sites = SitesOf(face, midpoints);
+    for (const auto& child : kChildren) {
+      if (std::find(child, child + 3, midpoint) == child + 3) continue;
+      if (FoldsInChart(sites, child)) return std::numeric_limits<double>::infinity();
+      area += std::max(0.0, -double{FacingArea(sites, child)});
+    }
+  }
+  return area;
+}
+
+std::vector<uint32_t> LevelPiercer::TurnedOverMidpoints(const std::vector<Site>& midpoints) const {
+  std::vector<uint32_t> turned;
+  for (uint32_t f = 0; f < coarse_.num_faces(); ++f) {
+    const FaceSites sites = SitesOf(f, midpoints);
+    for (const auto& child : kChildren) {
+      if (FacingArea(sites, child) >= 0) continue;
+      for (const int corner : child) {
+        if (corner >= 3) turned.push_back(coarse_.face_edges[f][corner - 3]);
+      }
+    }
+  }
+  std::sort(turned.begin(), turned.end());
+  turned.erase(std::unique(turned.begin(), turned.end()), turned.end());
+  return turned;
+}
+
+// Where a midpoint may move to: a step along the edge or across it in the parametrization; on a curve along it only.
+std::vector<Site> LevelPiercer::PlacesNear(uint32_t edge, const Site& site, double step) const {
+  std::vector<Site> places;
+  if (coarse_.on_curve[edge]) {
+    for (const double share : {0.5 - step, 0.5 - step / 2, 0.5, 0.5 + step / 2, 0.5 + step}) places.push_back(CurveSite(edge, share));
+    return places;
+  }
+  const Expectation expected = Expect(edge);
+  const uint32_t face = coarse_.edge_faces[edge][0];
+  const std::optional<ChartPoint> at = domain_.ToChart(expected.center, site.parameter);
+  const ChartPoint along = *domain_.ToChart(expected.center, sites_[coarse_.edges[edge][1]].parameter) - expected.middle;
+  const ChartPoint across =
+      *domain_.ToChart(expected.center, sites_[OppositeVertex(coarse_, face, edge)].parameter) - expected.middle;
+  for (int i = -1; i <= 1; ++i) {
+    for (int k = -1; k <= 1; ++k) {
+      const std::optional<DomainPoint> p = domain_.FromChart(expected.center, *at + along * (2 * i * step) + across * (k * step));
+      if (!p || (i == 0 && k == 0)) continue;
+      Site place = SiteOf(*p, PiercingKind::kParametric);
+      if (Confirms(edge, expected.middle, expected.chart_length, &place)) places.push_back(place);
+    }
+  }
+  return places;
+}
+
+// Where even the last resort has left triangles turned over, the surface winds between the parametric points. Their midpoints
+// move about, one after the other, as long as that turns some area back.
+void LevelPiercer::TurnBack(std::vector<Site>* midpoints) const {
+  double step = 0.2;
+  for (int round = 0; round < options_.turning_rounds; ++round, step *= 0.75) {
+    const std::vector<uint32_t> turned = TurnedOverMidpoints(*midpoints);
+    if (turned.empty()) return;
+    for (const uint32_t e : turned) {
+      Site& site = (*midpoints)[e];
+      Site best = site;
+      double least = TurnedOverAround(e, *midpoints);
+      for (const Site& place : PlacesNear(e, best, step)) {
+        site = place;
+        const double area = TurnedOverAround(e, *midpoints);
+        if (area < least) {
+          least = area;
+          best = place;
+        }
+      }
+      site = best;
+    }
+  }
+}
+
 std::vector<Site> LevelPiercer::Run(const StencilTable& stencils, const std::vector<Vec3f>& positions) {
   predicted_ = PredictMidpoints(coarse_, stencils, positions);
   frames_ = ComputeLocalFrames(coarse_, positions, predicted_);
@@ -296,6 +398,7 @@ std::vector<Site> LevelPiercer::Run(const StencilTable& stencils, const std::vec
     });
   }
   Relax(&midpoints);
+  TurnBack(&midpoints);
   return midpoints;
 }
 

@@ -19,12 +19,14 @@ struct PiercingOptions {
   double min_normal_cosine = 0.2;       // between the input's normal and the predicted one
   double min_child_area = 0.02;         // of a fine triangle in the parametrization, as a share of its parent (1/4 is even)
   int relaxation_rounds = 2;            // over the vertices of a level that are not on their normal line
+  int turning_rounds = 4;               // over the vertices of triangles that are turned over after all of this
 };
 
 // Each level: predict the midpoint of every edge with the butterfly stencil, pierce the input along the predicted normal, and
 // keep the nearest hit that the parametrization confirms; where there is none take the closest point on the input, else the
 // parametric point. Then every fine triangle is checked for folds in the parametrization and against the input's normals, and
-// the midpoints of those that fail fall back. The parametric triangles never fold, so the mesh keeps the input's topology.
+// the midpoints of those that fail fall back. The parametric triangles never fold, so the mesh keeps the input's topology; where
+// they are turned over in space nonetheless, their midpoints move in the parametrization until that is undone or no move helps.
 //
 // base_positions: #V0, of the base as the decoder will have it (they need not lie on the input).
 NormalMesh Pierce(const InputSurface& surface, const BaseDomain& domain, const std::vector<Vec3f>& base_positions,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "common/subdivision.h"
@@ -128,13 +129,40 @@ std::vector<uint8_t> CopiedVertices(const BaseTags& tags) {
   return copied;
 }
 
+// Twice the area of a triangle seen along the normals of the input at its corners; below zero where it is turned over.
+float FacingArea(const Triangle& t, const std::vector<Vec3f>& positions, const std::vector<Vec3f>& normals) {
+  const Vec3f &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
+  return Dot(Cross(b - a, c - a), Normalized(normals[t[0]] + normals[t[1]] + normals[t[2]]));
+}
+
+// Moves the vertices of `mesh` along their normals, but less far, in the end not at all, at triangles that would be turned over by
+// it, or farther than they are.
+void MoveUnlessTurned(const std::vector<double>& moves, const std::vector<Vec3f>& normals, TriangleMesh* mesh) {
+  constexpr int kRounds = 6;
+  const std::vector<Vec3f> before = mesh->positions;
+  std::vector<uint8_t> halvings(moves.size(), 0);
+  for (int round = 0; round <= kRounds; ++round) {
+    for (size_t v = 0; v < moves.size(); ++v) {
+      const double share = halvings[v] < kRounds ? std::ldexp(1.0, -halvings[v]) : 0.0;
+      mesh->positions[v] = before[v] + normals[v] * static_cast<float>(moves[v] * share);
+    }
+    std::vector<uint8_t> turned(moves.size(), 0);
+    for (const Triangle& t : mesh->triangles) {
+      const float area = FacingArea(t, mesh->positions, normals);
+      if (area < 0 && area < FacingArea(t, before, normals)) turned[t[0]] = turned[t[1]] = turned[t[2]] = 1;
+    }
+    if (std::find(turned.begin(), turned.end(), 1) == turned.end()) return;
+    for (size_t v = 0; v < moves.size(); ++v) halvings[v] = static_cast<uint8_t>(halvings[v] + turned[v]);
+  }
+}
+
 }  // namespace
 
 void FitToInput(const InputSurface& surface, const SurfaceFitOptions& options, NormalMesh* remesh) {
   SemiRegularMesh& mesh = remesh->mesh;
   Topology topology = BuildTopology(mesh.num_base_vertices, mesh.base_triangles, mesh.tags).value();
   for (int level = 0; level < mesh.num_levels; ++level) topology = Refine(topology);
-  const TriangleMesh finest{mesh.positions, std::move(topology.triangles)};
+  TriangleMesh finest{mesh.positions, std::move(topology.triangles)};
   const TriangleTree tree(finest);
   const std::vector<SurfacePoint> points =
       SpreadPoints(surface.mesh(), options.samples_per_vertex * static_cast<double>(finest.positions.size()));
@@ -146,12 +174,13 @@ void FitToInput(const InputSurface& surface, const SurfaceFitOptions& options, N
       samples[i] = SampleAt(surface, points[i], finest, tree, remesh->surface_normals, &hint);
     }
   });
-  const std::vector<double> moves = Solve(NormalEquations(samples, options.stiffness), mesh.positions.size(), options.iterations);
+  std::vector<double> moves = Solve(NormalEquations(samples, options.stiffness), mesh.positions.size(), options.iterations);
   const std::vector<uint8_t> pinned = CopiedVertices(mesh.tags);
-  for (size_t v = 0; v < moves.size(); ++v) {
-    if (v < pinned.size() && pinned[v]) continue;
-    mesh.positions[v] += remesh->surface_normals[v] * static_cast<float>(moves[v]);
+  for (size_t v = 0; v < pinned.size(); ++v) {
+    if (pinned[v]) moves[v] = 0;
   }
+  MoveUnlessTurned(moves, remesh->surface_normals, &finest);
+  mesh.positions = std::move(finest.positions);
 }
 
 }  // namespace lacerta

@@ -15,8 +15,9 @@ struct SurfaceFitOptions {
 };
 
 // Moves the vertices of the finest level along the normals of the input so that the mean squared distance from points spread
-// evenly over the input to the plane of the triangle nearest to each of them becomes least, but for base vertices at which a cut is to stay closed: linear least squares in one number
-// per vertex, solved by conjugate gradients.
+// evenly over the input to the plane of the triangle nearest to each of them becomes least: linear least squares in one number
+// per vertex, solved by conjugate gradients. Base vertices at which a cut is to stay closed do not move; others move less far
+// where a triangle would be turned over.
 void FitToInput(const InputSurface& surface, const SurfaceFitOptions& options, NormalMesh* remesh);
 
 }  // namespace lacerta

@@ -37,6 +37,24 @@ Topology TopologyWithFeatures(const TriangleMesh& mesh) {
   return BuildTopology(topology.num_vertices, mesh.triangles, tags).value();
 }
 
+// Makes copies of a vertex corners, but for those inside of double sheets, where all around have copies: they are as free as any
+// vertex of a sheet alone.
+void PinCopies(size_t num_sources, SurfaceParts* parts) {
+  std::vector<uint32_t> num_copies(num_sources, 0);
+  for (const uint32_t v : parts->source_vertex) ++num_copies[v];
+  const auto is_copy = [&](uint32_t v) { return num_copies[parts->source_vertex[v]] > 1; };
+  Topology& topology = parts->topology;
+  std::vector<uint8_t> inside(topology.num_vertices, 1);
+  for (uint32_t e = 0; e < topology.num_edges(); ++e) {
+    const auto& [a, b] = topology.edges[e];
+    if (topology.on_curve[e] || !is_copy(a)) inside[b] = 0;
+    if (topology.on_curve[e] || !is_copy(b)) inside[a] = 0;
+  }
+  for (uint32_t v = 0; v < topology.num_vertices; ++v) {
+    if (is_copy(v) && !inside[v]) topology.role[v] = CurveRole::kCorner;
+  }
+}
+
 }  // namespace
 
 SurfaceParts SplitSurface(const TriangleMesh& cleaned, const SurfacePartsOptions& options) {
@@ -53,11 +71,7 @@ SurfaceParts SplitSurface(const TriangleMesh& cleaned, const SurfacePartsOptions
   if (parts.refined.triangles.empty()) return parts;
 
   parts.topology = TopologyWithFeatures(parts.refined);
-  std::vector<uint32_t> num_copies(cleaned.positions.size(), 0);
-  for (const uint32_t v : parts.source_vertex) ++num_copies[v];
-  for (uint32_t v = 0; v < parts.source_vertex.size(); ++v) {
-    if (num_copies[parts.source_vertex[v]] > 1) parts.topology.role[v] = CurveRole::kCorner;
-  }
+  PinCopies(cleaned.positions.size(), &parts);
   return parts;
 }
 

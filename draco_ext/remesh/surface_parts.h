@@ -15,7 +15,7 @@ struct SurfaceParts {
   // Components worth a base mesh and levels, as an oriented manifold with border; may be empty.
   TriangleMesh refined;
   // Of `refined`, with its creases. Corners are also the vertices at which the surface was cut, so that both sides of a cut keep
-  // the same points.
+  // the same points; those inside of double sheets are not.
   Topology topology;
   std::vector<uint32_t> source_vertex;  // #V of refined, the vertex of the cleaned input: equal for the copies of a cut
   // All other components, as they are; may be empty.

@@ -1,5 +1,9 @@
-// Remeshes mesh files and prints what came of it, one line of JSON each: remesh_report FILE...
-// The remesh has at most twice the vertices of the input. tests/bench/remesh_table.py makes a table of it.
+// Remeshes mesh files and prints what came of each as one line of JSON: remesh_report [--levels N] [--out FOLDER] FILE...
+//
+// Levels: 4 and 3, whichever comes closer to the input; 2 or 1 where no base is small enough for those. The base is as large as
+// it may be for a remesh of at most twice the vertices of the refined components. --levels: that number alone. --out: where to
+// write the finest levels, as NAME.ply. Peak memory is that of the process once the first remesh stands, before anything is
+// measured, so only that of the first file means anything.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -7,7 +11,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "lacerta/clean.h"
 #include "lacerta/decoder.h"
@@ -19,74 +28,225 @@
 #include "remesh/input_surface.h"
 #include "remesh/piercing.h"
 #include "remesh/surface_fit.h"
+#include "remesh/surface_parts.h"
+#include "remesh_measures.h"
 
 namespace lacerta {
 namespace {
 
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+struct Options {
+  int levels = 0;  // 0: to be chosen
+  std::string out;
+};
+
+double Now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+double PeakBytes() {
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-// Share of the area of triangles whose normal is reversed against the input's at their vertices.
-double FlippedShare(const TriangleMesh& mesh, const std::vector<Vec3f>& normals) {
-  double flipped = 0, total = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3f cross = Cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
-    const double area = Norm(cross);
-    total += area;
-    if (Dot(cross, normals[t[0]] + normals[t[1]] + normals[t[2]]) < 0) flipped += area;
+// What is prepared once per file.
+struct Input {
+  explicit Input(const TriangleMesh& cleaned)
+      : started(Now()),
+        parts(SplitSurface(cleaned)),
+        split(Now()),
+        history(Decimate(parts.refined, parts.topology, DecimateOptions())),
+        decimated(Now()),
+        surface(parts.refined, parts.topology),
+        prepared(Now()) {}
+
+  double started;
+  SurfaceParts parts;
+  double split;
+  CollapseHistory history;
+  double decimated;
+  InputSurface surface;
+  double prepared;
+};
+
+// A remesh with a certain number of levels.
+struct Attempt {
+  std::vector<uint32_t> input_vertex;  // of the base vertices
+  NormalMesh pierced, fitted;
+  double pierce_seconds = 0, fit_seconds = 0;
+  double psnr = 0;
+};
+
+double FinestVertices(const BaseDomain& domain, int levels) {
+  const Topology& t = domain.topology();
+  return static_cast<double>(SubdividedCounts({t.num_vertices, t.num_edges(), t.num_faces()}, levels).vertices);
+}
+
+// The domain with the largest base of which `levels` levels have at most `limit` vertices, or the coarsest if none has.
+BaseDomain ChooseDomain(const Input& input, int levels, double limit) {
+  const auto num_vertices = static_cast<double>(input.parts.refined.positions.size());
+  double base = limit / std::pow(4.0, levels);
+  for (;;) {
+    const auto time = static_cast<uint32_t>(std::min<double>(input.history.num_collapses(), std::max(0.0, num_vertices - std::floor(base))));
+    BaseDomain domain(input.history, time);
+    const double reached = FinestVertices(domain, levels);
+    if (reached <= limit || time == input.history.num_collapses()) return domain;
+    base = std::min(base * limit / reached, std::min<double>(base, domain.num_vertices()) - 1);
   }
-  return flipped / total;
+}
+
+// For each base vertex the first one that is a copy of the same vertex, as the encoder joins them.
+std::vector<uint32_t> JoinedVertices(const BaseDomain& domain, const std::vector<uint32_t>& source_vertex) {
+  std::vector<uint32_t> joined(domain.num_vertices());
+  std::unordered_map<uint32_t, uint32_t> first;
+  for (uint32_t v = 0; v < joined.size(); ++v) joined[v] = first.emplace(source_vertex[domain.input_vertex(v)], v).first->second;
+  return joined;
+}
+
+Attempt Remesh(const Input& input, const BaseDomain& domain, int levels) {
+  Attempt attempt;
+  for (uint32_t v = 0; v < domain.num_vertices(); ++v) attempt.input_vertex.push_back(domain.input_vertex(v));
+  PiercingOptions options;
+  options.num_levels = levels;
+  const double start = Now();
+  attempt.pierced = Pierce(input.surface, domain, domain.PositionsOn(input.parts.refined), options);
+  attempt.pierce_seconds = Now() - start;
+  attempt.pierced.mesh.tags.joined = JoinedVertices(domain, input.parts.source_vertex);
+  attempt.fitted = attempt.pierced;
+  const double pierced = Now();
+  FitToInput(input.surface, SurfaceFitOptions(), &attempt.fitted);
+  attempt.fit_seconds = Now() - pierced;
+  return attempt;
+}
+
+TriangleMesh Finest(const NormalMesh& mesh) { return MeshAtLevel(mesh.mesh, mesh.mesh.num_levels).value(); }
+
+SurfaceDistance DistanceOf(const SurfaceDistanceMeter& meter, const NormalMesh& mesh) {
+  return meter.Measure(Finest(mesh), SurfaceDistanceOptions::RmsOnly()).value();
+}
+
+// Components that do not have the topology of the input's, summed over the levels; each level that is no manifold counts as one.
+uint64_t NumChanged(const Input& input, const Attempt& attempt) {
+  const Components components = FindComponents(input.parts.topology);
+  uint64_t changed = 0;
+  for (int level = 0; level <= attempt.fitted.mesh.num_levels; ++level) {
+    const TriangleMesh mesh = MeshAtLevel(attempt.fitted.mesh, level).value();
+    const StatusOr<Topology> topology = BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles);
+    changed += topology.ok() ? NumChangedComponents(components, topology.value(), attempt.input_vertex) : 1;
+  }
+  return changed;
+}
+
+uint64_t NumNotFinite(const std::vector<Vec3f>& positions) {
+  return static_cast<uint64_t>(std::count_if(positions.begin(), positions.end(), [](const Vec3f& p) {
+    return !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z);
+  }));
+}
+
+// One member of a JSON object; numbers that JSON does not have are null.
+void Print(const char* name, double value, const char* format) {
+  std::printf(", \"%s\": ", name);
+  std::printf(std::isfinite(value) ? format : "null", value);
+}
+void Print(const char* name, uint64_t value) { std::printf(", \"%s\": %llu", name, static_cast<unsigned long long>(value)); }
+
+void PrintCurve(const char* name, const SurfaceDistance& d, double diagonal) {
+  Print((std::string(name) + "_rms").c_str(), d.Rms() / diagonal, "%.3g");
+  Print((std::string(name) + "_max").c_str(), d.Hausdorff() / diagonal, "%.3g");
+}
+
+void PrintInput(const TriangleMesh& cleaned, const Input& input) {
+  const Topology& t = input.parts.topology;
+  uint64_t creases = 0;
+  for (uint32_t e = 0; e < t.num_edges(); ++e) creases += t.on_curve[e] && !t.is_border(e);
+  Print("triangles", cleaned.triangles.size());
+  Print("vertices", cleaned.positions.size());
+  Print("refined_components", input.parts.refined_components);
+  Print("still_components", input.parts.still_components);
+  Print("refined_triangles", input.parts.refined.triangles.size());
+  Print("refined_vertices", input.parts.refined.positions.size());
+  Print("flipped", input.parts.report.flipped_triangles);
+  Print("cut_edges", input.parts.report.cut_edges);
+  Print("split_vertices", input.parts.report.split_vertices);
+  Print("borders", input.parts.report.borders);
+  Print("crease_edges", creases);
+}
+
+void PrintRemesh(const Input& input, const Attempt& best, const SurfaceDistanceMeter& meter) {
+  const NormalMesh& fitted = best.fitted;
+  const TriangleMesh finest = Finest(fitted);
+  Topology topology = BuildTopology(fitted.mesh.num_base_vertices, fitted.mesh.base_triangles, fitted.mesh.tags).value();
+  for (int level = 0; level < fitted.mesh.num_levels; ++level) topology = Refine(topology);
+  const SurfaceDistance distance = DistanceOf(meter, fitted);
+  const ReversedShare reversed = MeasureReversed(input.surface, finest, fitted.surface_normals);
+  const double diagonal = meter.diagonal();
+  Print("base_vertices", uint64_t{fitted.mesh.num_base_vertices});
+  Print("levels", static_cast<uint64_t>(fitted.mesh.num_levels));
+  Print("remesh_vertices", finest.positions.size());
+  Print("normal_share", NormalShare(fitted), "%.5f");
+  Print("psnr_pierced", Psnr(DistanceOf(meter, best.pierced).Rms(), diagonal), "%.2f");
+  Print("psnr", best.psnr, "%.2f");
+  Print("psnr_forward", Psnr(distance.forward.rms, diagonal), "%.2f");
+  Print("psnr_backward", Psnr(distance.backward.rms, diagonal), "%.2f");
+  Print("reversed", reversed.confirmed, "%.3g");
+  Print("reversed_at_closest", reversed.at_closest, "%.3g");
+  Print("reversed_pierced", MeasureReversed(input.surface, Finest(best.pierced), fitted.surface_normals).confirmed, "%.3g");
+  Print("not_finite", NumNotFinite(finest.positions));
+  Print("topology_changes", NumChanged(input, best));
+  PrintCurve("border", CurveDistance(input.parts.refined, input.parts.topology, finest, topology, Curve::kBorder), diagonal);
+  PrintCurve("crease", CurveDistance(input.parts.refined, input.parts.topology, finest, topology, Curve::kCrease), diagonal);
+}
+
+Status Report(const std::string& path, const Options& options) {
+  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ReadMeshFile(path));
+  LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(mesh));
+  const Input input(cleaned.mesh);
+  const std::string name = std::filesystem::path(path).stem().string();
+  std::printf("{\"mesh\": \"%s\"", name.c_str());
+  PrintInput(cleaned.mesh, input);
+  std::optional<Attempt> best;
+  if (!input.parts.refined.triangles.empty()) {
+    const double limit = 2.0 * static_cast<double>(input.parts.refined.positions.size());
+    std::optional<SurfaceDistanceMeter> meter;
+    for (int levels = options.levels ? options.levels : 4; levels > 0 && !(best && levels < 3); --levels) {
+      const BaseDomain domain = ChooseDomain(input, levels, limit);
+      if (FinestVertices(domain, levels) > limit && !options.levels && levels > 1) continue;
+      Attempt attempt = Remesh(input, domain, levels);
+      if (!best) {
+        Print("bytes_per_triangle", PeakBytes() / static_cast<double>(cleaned.mesh.triangles.size()), "%.0f");
+        LACERTA_ASSIGN_OR_RETURN(meter, SurfaceDistanceMeter::Create(input.parts.refined));
+      }
+      attempt.psnr = Psnr(DistanceOf(*meter, attempt.fitted).Rms(), meter->diagonal());
+      if (!best || attempt.psnr > best->psnr) best = std::move(attempt);
+      if (options.levels) break;
+    }
+    PrintRemesh(input, *best, *meter);
+    if (!options.out.empty()) LACERTA_RETURN_IF_ERROR(WriteMeshFile(Finest(best->fitted), options.out + "/" + name + ".ply"));
+  }
+  Print("split_s", input.split - input.started, "%.2f");
+  Print("decimate_s", input.decimated - input.split, "%.2f");
+  Print("prepare_s", input.prepared - input.decimated, "%.2f");
+  Print("pierce_s", best ? best->pierce_seconds : 0, "%.2f");
+  Print("fit_s", best ? best->fit_seconds : 0, "%.2f");
+  std::printf("}\n");
+  std::fflush(stdout);
+  return Status();
 }
 
 }  // namespace
 }  // namespace lacerta
 
 int main(int argc, char** argv) {
-  using namespace lacerta;
+  lacerta::Options options;
+  int failures = 0;
   for (int i = 1; i < argc; ++i) {
-    const TriangleMesh input = Clean(ReadMeshFile(argv[i]).value()).value().mesh;
-    const StatusOr<Topology> topology = BuildTopology(static_cast<uint32_t>(input.positions.size()), input.triangles);
-    if (!topology.ok()) {
-      std::printf("%s: %s\n", argv[i], topology.status().message().c_str());
-      continue;
+    const std::string word = argv[i];
+    if (word == "--levels" && i + 1 < argc) {
+      options.levels = std::atoi(argv[++i]);
+    } else if (word == "--out" && i + 1 < argc) {
+      options.out = argv[++i];
+    } else if (const lacerta::Status status = lacerta::Report(word, options); !status.ok()) {
+      std::fprintf(stderr, "%s: %s\n", word.c_str(), status.message().c_str());
+      ++failures;
     }
-    const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(input).value();
-    const double start = Now();
-    const CollapseHistory history = Decimate(input, topology.value(), DecimateOptions());
-    const double decimated = Now();
-    const InputSurface surface(input, topology.value());
-    const double prepared = Now();
-    const char* levels_text = std::getenv("LEVELS");
-    const int levels = levels_text ? std::atoi(levels_text) : 4;
-    const auto base = static_cast<uint32_t>(2.0 * static_cast<double>(input.positions.size()) / std::pow(4.0, levels));
-    const auto num_vertices = static_cast<uint32_t>(input.positions.size());
-    const BaseDomain domain(history, std::min(history.num_collapses(), num_vertices - base));
-    std::vector<Vec3f> positions;
-    for (uint32_t v = 0; v < domain.num_vertices(); ++v) positions.push_back(input.positions[domain.input_vertex(v)]);
-    PiercingOptions options;
-    options.num_levels = levels;
-    NormalMesh remesh = Pierce(surface, domain, positions, options);
-    const double pierced = Now();
-    if (std::getenv("FIT")) {
-      SurfaceFitOptions fit;
-      if (const char* t = std::getenv("STIFF")) fit.stiffness = std::atof(t);
-      if (const char* t = std::getenv("SPV")) fit.samples_per_vertex = std::atof(t);
-      FitToInput(surface, fit, &remesh);
-    }
-    const double fitted = Now();
-    const TriangleMesh finest = MeshAtLevel(remesh.mesh, levels).value();
-    const SurfaceDistance distance = meter.Measure(finest, SurfaceDistanceOptions::RmsOnly()).value();
-    rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    std::printf(
-        "{\"file\": \"%s\", \"triangles\": %zu, \"vertices\": %zu, \"base\": %u, \"coarsest\": %u, \"psnr\": %.2f, \"forward\": %.2f, \"backward\": %.2f, \"normal\": %.4f, \"flipped\": %.6f, "
-        "\"decimate\": %.2f, \"prepare\": %.2f, \"pierce\": %.2f, \"fit\": %.2f, \"bytes_per_triangle\": %.0f}\n",
-        argv[i], input.triangles.size(), finest.positions.size(), domain.num_vertices(), num_vertices - history.num_collapses(), Psnr(distance.Rms(), meter.diagonal()),
-        Psnr(distance.forward.rms, meter.diagonal()), Psnr(distance.backward.rms, meter.diagonal()),
-        NormalShare(remesh), FlippedShare(finest, remesh.surface_normals), decimated - start, prepared - decimated,
-        pierced - prepared, fitted - pierced, 1024.0 * static_cast<double>(usage.ru_maxrss) / static_cast<double>(input.triangles.size()));
-    std::fflush(stdout);
-    if (const char* out = std::getenv("OUT")) (void)WriteMeshFile(finest, out);
   }
+  return failures > 0;
 }

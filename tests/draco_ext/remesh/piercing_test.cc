@@ -115,6 +115,25 @@ TEST(Pierce, SpheresHaveNoTriangleTurnedOver) {
   }
 }
 
+// A base too coarse for its spikes: no fallback alone keeps all triangles facing out.
+TEST(Pierce, TurnsBackWhatTheLastResortLeaves) {
+  const TriangleMesh input = shapes::SpikySphere(5, 40, 0.8f);
+  const CollapseHistory history = testing::Decimated(input, {60, 12, 0.2});
+  const InputSurface surface(input, testing::TopologyOf(input));
+  const BaseDomain domain(history, history.num_collapses());
+  const auto num_turned = [&](int rounds) {
+    PiercingOptions options;
+    options.num_levels = 4;
+    options.turning_rounds = rounds;
+    const NormalMesh mesh = Pierce(surface, domain, BasePositions(domain, input), options);
+    ExpectSound(input, mesh);
+    return NumTurnedOver(mesh);
+  };
+  const size_t before = num_turned(0), after = num_turned(4);
+  EXPECT_GT(before, 100u);
+  EXPECT_LT(after, before / 3);
+}
+
 TEST(Pierce, MoreLevelsAreCloser) {
   const TriangleMesh input = shapes::BumpySphere(5);
   double last = 0;
