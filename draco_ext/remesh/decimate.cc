@@ -57,6 +57,7 @@ class Decimator {
 
   const DecimateOptions options_;
   std::vector<Vec3d> positions_;
+  std::vector<Vec3d> normals_;    // of the input's vertices, unit; zero on curves, where there are several
   std::vector<Quadric> quadrics_;
   std::vector<std::vector<uint32_t>> vertex_faces_;
   std::vector<uint8_t> on_border_;
@@ -94,11 +95,14 @@ Decimator::Decimator(const TriangleMesh& mesh, const Topology& topology, const D
   positions_.reserve(mesh.positions.size());
   for (const Vec3f& p : mesh.positions) positions_.push_back((Vec3Cast<double>(p) - low) * (1 / diagonal) - Vec3d{0.5, 0.5, 0.5});
   double sum = 0;
+  normals_.resize(positions_.size());
   for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
     const Triangle& t = mesh.triangles[f];
-    covered_area_.push_back(Norm(Cross(positions_[t[1]] - positions_[t[0]], positions_[t[2]] - positions_[t[0]])) / 2);
+    const Vec3d normal = Cross(positions_[t[1]] - positions_[t[0]], positions_[t[2]] - positions_[t[0]]);
+    covered_area_.push_back(Norm(normal) / 2);
     const Quadric q = Quadric::OfTriangle(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
     for (int k = 0; k < 3; ++k) {
+      normals_[t[k]] += normal;
       quadrics_[t[k]] += q;
       vertex_faces_[t[k]].push_back(f);
       sum += SquaredNorm(positions_[t[k]] - positions_[t[(k + 1) % 3]]);
@@ -113,6 +117,9 @@ Decimator::Decimator(const TriangleMesh& mesh, const Topology& topology, const D
       quadrics_[v] += q;
       on_border_[v] = 1;
     }
+  }
+  for (uint32_t v = 0; v < normals_.size(); ++v) {
+    normals_[v] = topology.role[v] == CurveRole::kSmooth ? Normalized(normals_[v]) : Vec3d{};
   }
   length_scale_ = sum / (3.0 * static_cast<double>(mesh.triangles.size()));
 }
@@ -232,7 +239,7 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
                        int kept) const {
   const int k = fan.size();
   const uint32_t u = fan.ring[kept];
-  double worst_aspect = 1;
+  double worst_aspect = 1, worst_cosine = 1;
   double new_area = 0;
   for (int i = kept + 1; i < kept + k - 1; ++i) {
     const int a = i % k, b = (i + 1) % k;
@@ -242,6 +249,7 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
     const double area2 = Norm(normal);
     if (!(area2 > 0) || Dot(normal, old_normals[a]) < options_.min_normal_cosine * area2) return kNotSound;
     new_area += area2 / 2;
+    for (const uint32_t w : {u, fan.ring[a], fan.ring[b]}) worst_cosine = std::min(worst_cosine, Dot(normal, normals_[w]) / area2);
     const double edges = SquaredNorm(pa - pu) + SquaredNorm(pb - pu) + SquaredNorm(pb - pa);
     worst_aspect = std::max(worst_aspect, edges / (2 * std::sqrt(3.0) * area2));  // 1 for the equilateral triangle
   }
@@ -254,10 +262,13 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
   double covered = 0;
   for (const uint32_t f : fan.faces) covered += covered_area_[f];
   const double coverage = std::max(1.0, covered / new_area);
+  // Nor is a triangle of much use that faces away from the input at its own corners.
+  const double turning_penalty = 1 + 5 * std::max(0.0, -worst_cosine);
   const double valence_penalty = 1 + 0.25 * std::max(0.0, valence - 7);
   // The small second term orders flat regions by edge length; relative to the input's scale, it is nothing elsewhere.
   const double edge = SquaredNorm(positions_[u] - positions_[v]);
-  return (q.Evaluate(positions_[u]) + 1e-6 * edge * length_scale_) * worst_aspect * valence_penalty * coverage * coverage;
+  return (q.Evaluate(positions_[u]) + 1e-6 * edge * length_scale_) * worst_aspect * valence_penalty * coverage * coverage *
+         turning_penalty;
 }
 
 Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {

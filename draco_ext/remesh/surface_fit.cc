@@ -136,7 +136,7 @@ float FacingArea(const Triangle& t, const std::vector<Vec3f>& positions, const s
 }
 
 // Moves the vertices of `mesh` along their normals, but less far, in the end not at all, at triangles that would be turned over by
-// it, or farther than they are.
+// it.
 void MoveUnlessTurned(const std::vector<double>& moves, const std::vector<Vec3f>& normals, TriangleMesh* mesh) {
   constexpr int kRounds = 6;
   const std::vector<Vec3f> before = mesh->positions;
@@ -149,7 +149,7 @@ void MoveUnlessTurned(const std::vector<double>& moves, const std::vector<Vec3f>
     std::vector<uint8_t> turned(moves.size(), 0);
     for (const Triangle& t : mesh->triangles) {
       const float area = FacingArea(t, mesh->positions, normals);
-      if (area < 0 && area < FacingArea(t, before, normals)) turned[t[0]] = turned[t[1]] = turned[t[2]] = 1;
+      if (area < 0 && FacingArea(t, before, normals) >= 0) turned[t[0]] = turned[t[1]] = turned[t[2]] = 1;
     }
     if (std::find(turned.begin(), turned.end(), 1) == turned.end()) return;
     for (size_t v = 0; v < moves.size(); ++v) halvings[v] = static_cast<uint8_t>(halvings[v] + turned[v]);
