@@ -1,5 +1,6 @@
 #include "remesh/surface_parts.h"
 
+#include <cmath>
 #include <utility>
 
 #include "remesh/features.h"
@@ -28,9 +29,31 @@ TriangleMesh Part(const ManifoldMesh& whole, const Belongs& belongs, std::vector
   return part;
 }
 
-Topology TopologyWithFeatures(const TriangleMesh& mesh) {
+// Takes back the creases of components that have few of them. A part made of smooth pieces is crossed by creases; on a scan they are
+// the rim of an ear or noise, and cost more, as curves that the base must follow, than they save (docs/decisions/0008-curves.md).
+// component: #F, below num_components.
+void DropFewCreases(const TriangleMesh& mesh, const Topology& topology, const std::vector<uint32_t>& component, size_t num_components,
+                    std::vector<uint8_t>* crease) {
+  constexpr double kLeastLength = 2;  // of all creases of a component, in square roots of its area
+  const auto at = [&](uint32_t v) { return Vec3Cast<double>(mesh.positions[v]); };
+  std::vector<double> area(num_components, 0.0), length(num_components, 0.0);
+  for (uint32_t f = 0; f < topology.num_faces(); ++f) {
+    const Triangle& t = mesh.triangles[f];
+    area[component[f]] += Norm(Cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]))) / 2;
+  }
+  const auto component_of = [&](uint32_t edge) { return component[topology.edge_faces[edge][0]]; };
+  for (uint32_t e = 0; e < topology.num_edges(); ++e) {
+    if ((*crease)[e]) length[component_of(e)] += Norm(at(topology.edges[e][1]) - at(topology.edges[e][0]));
+  }
+  for (uint32_t e = 0; e < topology.num_edges(); ++e) {
+    if (length[component_of(e)] < kLeastLength * std::sqrt(area[component_of(e)])) (*crease)[e] = 0;
+  }
+}
+
+Topology TopologyWithFeatures(const TriangleMesh& mesh, const std::vector<uint32_t>& component, size_t num_components) {
   Topology topology = BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles).value();
   Features features = DetectFeatures(mesh, topology);
+  DropFewCreases(mesh, topology, component, num_components, &features.crease);
   BaseTags tags;
   tags.crease = std::move(features.crease);
   tags.corner = std::move(features.corner);
@@ -70,7 +93,11 @@ SurfaceParts SplitSurface(const TriangleMesh& cleaned, const SurfacePartsOptions
   parts.still = Part(whole, [&](uint32_t f) { return !is_refined(f); }, &still_source);
   if (parts.refined.triangles.empty()) return parts;
 
-  parts.topology = TopologyWithFeatures(parts.refined);
+  std::vector<uint32_t> component;
+  for (uint32_t f = 0; f < whole.component.size(); ++f) {
+    if (is_refined(f)) component.push_back(whole.component[f]);
+  }
+  parts.topology = TopologyWithFeatures(parts.refined, component, whole.components.size());
   PinCopies(cleaned.positions.size(), &parts);
   return parts;
 }
