@@ -24,7 +24,8 @@ const PackResult& Packed(Fallback fallback) {
   const auto found = known.find(fallback);
   if (found != known.end()) return found->second;
   PackOptions options;
-  options.encode.target = {EncodeTarget::Kind::kPsnr, 55.0};
+  options.encode.target = {EncodeTarget::Kind::kPsnr, 62.0};
+  options.encode.levels = LevelChoice::kAlways;
   options.fallback = fallback;
   return known.emplace(fallback, PackMesh(WavySphere(24, 36), "ball", options).value()).first->second;
 }
