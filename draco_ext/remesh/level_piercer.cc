@@ -1,0 +1,192 @@
+#include "remesh/level_piercer.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace lacerta {
+
+// Whether the parametrization agrees that a point found on the input belongs to the middle of `edge`: not too far from it, and
+// in the chart of the base face where folds are checked; on a base edge in the two faces there. So all vertices of a level
+// over one base face lie in its chart, and so does the middle of any two of them, since chart and face pair are convex.
+bool LevelPiercer::Confirms(uint32_t edge, const ChartPoint& middle, double edge_length, Site* site) const {
+  const uint32_t b0 = BaseFace(coarse_.edge_faces[edge][0]), b1 = BaseFace(coarse_.edge_faces[edge][1]);
+  const std::optional<ChartPoint> q = domain_.ToChart(b0, site->parameter);
+  if (!q || (b1 != b0 && site->parameter.face != b0 && site->parameter.face != b1)) return false;
+  for (int k = 0; k < 3; ++k) {  // not across a curve
+    if ((*q)[k] < 0 && domain_.topology().on_curve[domain_.topology().face_edges[b0][k]]) return false;
+  }
+  site->parameter_distance = std::sqrt(std::max(0.0, SquaredChartLength(*q - middle))) / edge_length;
+  return site->parameter_distance <= options_.max_parameter_distance;
+}
+
+// The point of a curve at a share of an edge in the parametrization.
+Site LevelPiercer::CurveSite(uint32_t edge, double share) const {
+  const auto& [a, b] = coarse_.edges[edge];
+  const uint32_t center = BaseFace(coarse_.edge_faces[edge][0]);
+  const ChartPoint qa = *domain_.ToChart(center, sites_[a].parameter), qb = *domain_.ToChart(center, sites_[b].parameter);
+  const DomainPoint parameter{center, ClampWeights(qa * (1 - share) + qb * share)};
+  Site site = SiteOf(parameter, PiercingKind::kCurve);
+  site.parameter_distance = std::fabs(share - 0.5);
+  return site;
+}
+
+// On a curve: where the plane across the edge at the predicted midpoint meets the input's curve, so that nothing is left to
+// code along the edge, else halfway in the parametrization.
+Site LevelPiercer::FindCurveSite(uint32_t edge, PiercingKind first_kind) const {
+  if (first_kind == PiercingKind::kNormal) {
+    const Vec3f along = frames_[edge].tangent1;
+    const auto beyond = [&](const Site& site) { return Dot(site.position - predicted_[edge], along) > 0; };
+    constexpr double kFarthest = 0.35;  // from the middle, in lengths of the edge
+    double low = 0.5 - kFarthest, high = 0.5 + kFarthest;
+    if (!beyond(CurveSite(edge, low)) && beyond(CurveSite(edge, high))) {
+      for (int i = 0; i < 24; ++i) {
+        const double middle = 0.5 * (low + high);
+        (beyond(CurveSite(edge, middle)) ? high : low) = middle;
+      }
+      return CurveSite(edge, low);
+    }
+  }
+  return CurveSite(edge, 0.5);
+}
+
+Expectation LevelPiercer::Expect(uint32_t edge) const {
+  const auto& [a, b] = coarse_.edges[edge];
+  const uint32_t center = BaseFace(coarse_.edge_faces[edge][0]);
+  const ChartPoint qa = *domain_.ToChart(center, sites_[a].parameter), qb = *domain_.ToChart(center, sites_[b].parameter);
+  return {center, (qa + qb) * 0.5, std::sqrt(std::max(1e-30, SquaredChartLength(qb - qa))),
+          static_cast<float>(options_.max_distance) * Norm(sites_[b].position - sites_[a].position)};
+}
+
+Site LevelPiercer::SiteAt(const SurfacePoint& point, PiercingKind kind) const {
+  const Vec3d w{point.barycentric[0], point.barycentric[1], point.barycentric[2]};
+  return {point.position, surface_.NormalAt(point.face, w), domain_.FromInput({point.face, w}), kind, 0};
+}
+
+bool LevelPiercer::IsSound(uint32_t edge, const Expectation& expected, Site* site) const {
+  return Dot(site->normal, frames_[edge].normal) >= options_.min_normal_cosine &&
+         Confirms(edge, expected.middle, expected.chart_length, site);
+}
+
+// The point of the input closest to `position`, else the one at the middle of the edge in the parametrization.
+Site LevelPiercer::ClosestSite(uint32_t edge, const Vec3f& position) const {
+  const Expectation expected = Expect(edge);
+  const ClosestPointResult closest = surface_.tree().ClosestPoint(position, expected.reach * expected.reach);
+  if (closest.point.face != kNone) {
+    Site site = SiteAt(closest.point, PiercingKind::kClosest);
+    if (IsSound(edge, expected, &site)) return site;
+  }
+  return ParametricSite(expected);
+}
+
+// The point of the input at a point of the domain.
+Site LevelPiercer::SiteOf(const DomainPoint& parameter, PiercingKind kind) const {
+  const DomainPoint on_input = domain_.ToInput(parameter);
+  return {surface_.PositionAt(on_input.face, on_input.barycentric), surface_.NormalAt(on_input.face, on_input.barycentric),
+          parameter, kind, 0};
+}
+
+Site LevelPiercer::ParametricSite(const Expectation& expected) const {
+  return SiteOf(*domain_.FromChart(expected.center, expected.middle), PiercingKind::kParametric);
+}
+
+// The nearest sound hit of the normal line, else the closest point.
+Site LevelPiercer::PiercedSite(uint32_t edge) const {
+  const Expectation expected = Expect(edge);
+  const Vec3f &origin = predicted_[edge], &normal = frames_[edge].normal;
+  std::vector<LineHit> hits;
+  surface_.tree().IntersectLine(origin, normal, -expected.reach, expected.reach, &hits);
+  std::sort(hits.begin(), hits.end(), [](const LineHit& x, const LineHit& y) { return std::fabs(x.t) < std::fabs(y.t); });
+  for (const LineHit& hit : hits) {
+    Site site = SiteAt(hit.point, PiercingKind::kNormal);
+    site.position = origin + normal * hit.t;
+    if (IsSound(edge, expected, &site)) return site;
+  }
+  return ClosestSite(edge, origin);
+}
+
+Site LevelPiercer::FindSite(uint32_t edge, PiercingKind first_kind) const {
+  if (coarse_.on_curve[edge]) return FindCurveSite(edge, first_kind);
+  if (first_kind == PiercingKind::kNormal) return PiercedSite(edge);
+  return first_kind == PiercingKind::kClosest ? ClosestSite(edge, predicted_[edge]) : ParametricSite(Expect(edge));
+}
+
+FaceSites LevelPiercer::SitesOf(uint32_t face, const std::vector<Site>& midpoints) const {
+  FaceSites s;
+  for (int k = 0; k < 3; ++k) {
+    s.site[k] = &sites_[coarse_.triangles[face][k]];
+    s.site[3 + k] = &midpoints[coarse_.face_edges[face][k]];
+  }
+  for (int k = 0; k < 6; ++k) s.q[k] = *domain_.ToChart(BaseFace(face), s.site[k]->parameter);
+  s.area = ChartArea(s.q[0], s.q[1], s.q[2]);
+  return s;
+}
+
+bool LevelPiercer::FoldsInChart(const FaceSites& s, const int (&child)[3]) const {
+  return ChartArea(s.q[child[0]], s.q[child[1]], s.q[child[2]]) < options_.min_child_area * s.area;
+}
+
+bool LevelPiercer::Folds(const FaceSites& s, const int (&child)[3]) const {
+  return FoldsInChart(s, child) || FacingArea(s, child) <= 0;
+}
+
+bool LevelPiercer::FoldsAround(uint32_t edge, const std::vector<Site>& midpoints) const {
+  for (const uint32_t face : coarse_.edge_faces[edge]) {
+    if (face == kNone) continue;
+    const int midpoint = 3 + EdgeCorner(coarse_, face, edge);
+    const FaceSites sites = SitesOf(face, midpoints);
+    for (const auto& child : kChildren) {
+      if (std::find(child, child + 3, midpoint) != child + 3 && Folds(sites, child)) return true;
+    }
+  }
+  return false;
+}
+
+// Marks midpoints that must fall back: in each fine triangle that folds, the one that strays farthest in the parametrization.
+std::vector<uint8_t> LevelPiercer::FoldedMidpoints(const std::vector<Site>& midpoints) const {
+  std::vector<uint8_t> folded_corners(coarse_.num_faces(), 0);  // bit k: the midpoint opposite to corner k
+  tbb::parallel_for(uint32_t{0}, coarse_.num_faces(), [&](uint32_t f) {
+    const FaceSites s = SitesOf(f, midpoints);
+    for (const auto& child : kChildren) {
+      if (!Folds(s, child)) continue;
+      int worst = -1;
+      for (const int corner : child) {
+        if (corner < 3 || IsLastResort(*s.site[corner])) continue;
+        if (worst < 0 || s.site[corner]->parameter_distance > s.site[worst]->parameter_distance) worst = corner;
+      }
+      if (worst >= 0) folded_corners[f] |= static_cast<uint8_t>(1 << (worst - 3));
+    }
+  });
+  std::vector<uint8_t> marked(coarse_.num_edges(), 0);
+  for (uint32_t f = 0; f < coarse_.num_faces(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if ((folded_corners[f] >> k & 1) != 0) marked[coarse_.face_edges[f][k]] = 1;
+    }
+  }
+  return marked;
+}
+
+std::vector<Site> LevelPiercer::Run(const StencilTable& stencils, const std::vector<Vec3f>& positions) {
+  predicted_ = PredictMidpoints(coarse_, stencils, positions);
+  frames_ = ComputeLocalFrames(coarse_, positions, predicted_);
+  std::vector<Site> midpoints(coarse_.num_edges());
+  tbb::parallel_for(uint32_t{0}, coarse_.num_edges(),
+                    [&](uint32_t e) { midpoints[e] = FindSite(e, PiercingKind::kNormal); });
+  // Each round moves at least one midpoint one kind further, so this ends; a few rounds settle it in practice.
+  for (;;) {
+    const std::vector<uint8_t> folded = FoldedMidpoints(midpoints);
+    if (std::find(folded.begin(), folded.end(), 1) == folded.end()) break;
+    tbb::parallel_for(uint32_t{0}, coarse_.num_edges(), [&](uint32_t e) {
+      if (!folded[e]) return;
+      const bool was_normal = midpoints[e].kind == PiercingKind::kNormal;
+      midpoints[e] = FindSite(e, was_normal ? PiercingKind::kClosest : PiercingKind::kParametric);
+    });
+  }
+  Relax(&midpoints);
+  TurnBack(&midpoints);
+  return midpoints;
+}
+
+}  // namespace lacerta
