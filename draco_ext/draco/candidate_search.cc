@@ -155,7 +155,9 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
       offset_ = 0;
     }
     last = log_lambda;
-    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(log_lambda));
+    StatusOr<Attempt> tried = Try(log_lambda);
+    if (!tried.ok() && (best || unmeasured)) break;  // so coarse a lattice cannot carry the base: what there is must do
+    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, std::move(tried));
     if (!target_.is_rate) {
       if (by_estimate && !is_met(attempt)) {
         unmeasured = std::move(attempt);
