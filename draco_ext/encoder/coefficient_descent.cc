@@ -148,10 +148,23 @@ std::vector<SetBits> CountBits(const SurfaceTarget& target, CodedSurface coded) 
   return bits;
 }
 
+// PlaneDistortion, but for curves, whose vertices may be off in all directions.
+double DistortionWithCurves(const SurfaceTarget& target, const std::vector<Vec3f>& positions) {
+  const std::vector<CurveRole>& role = target.topologies.back().role;
+  double sum = PlaneDistortion(target, positions);
+  for (size_t v = 0; v < positions.size(); ++v) {
+    if (role[v] == CurveRole::kSmooth) continue;
+    const Vec3f offset = positions[v] - target.points[v];
+    const double distance = Dot(offset, target.normals[v]);
+    sum += target.masses.back()[v] * (Dot(offset, Weigh(target, v, offset)) - distance * distance);
+  }
+  return sum;
+}
+
 // Leaves out whole sets, finest first, where that saves more rate than it costs distortion: zeros are cheap, not free.
 //   positions  Synthesize of `coded`
 void DropIdleSets(const SurfaceTarget& target, double lambda, std::vector<Vec3f> positions, CodedSurface* coded) {
-  double distortion = PlaneDistortion(target, positions);
+  double distortion = DistortionWithCurves(target, positions);
   const auto try_without = [&](float LevelSteps::*step, std::vector<int32_t> QuantizedLevel::*set, size_t i, double bits) {
     if (bits == 0) return;
     std::vector<int32_t>& values = coded->levels[i].*set;
@@ -161,7 +174,7 @@ void DropIdleSets(const SurfaceTarget& target, double lambda, std::vector<Vec3f>
       values.swap(kept);
       std::vector<Vec3f> without(positions.begin(), positions.begin() + target.topologies[i].num_vertices);
       for (int level = static_cast<int>(i) + 1; level <= target.num_levels(); ++level) AppendLevel(target, *coded, level, &without);
-      const double raised = PlaneDistortion(target, without);
+      const double raised = DistortionWithCurves(target, without);
       if (raised - distortion > lambda * bits) {
         values.swap(kept);
         return;

@@ -16,6 +16,7 @@ namespace lacerta {
 // normal one.
 inline Vec3f Weigh(const SurfaceTarget& target, size_t v, const Vec3f& offset) {
   constexpr float kPiercedSlideCost = 0.05f, kOtherSlideCost = 0.15f, kKeptSlideCost = 0.25f, kCurveSlideCost = 0.5f;
+  constexpr float kCurveWeight = 4.0f;  // a border is seen, though hardly any area lies at it
   const bool on_curve = target.topologies.back().role[v] != CurveRole::kSmooth;
   const size_t num_base = target.points.size() - target.piercing.size();
   const bool pierced = v < num_base || target.piercing[v - num_base] == PiercingKind::kNormal;
@@ -23,8 +24,9 @@ inline Vec3f Weigh(const SurfaceTarget& target, size_t v, const Vec3f& offset) {
                            : target.keeps_vertices ? kKeptSlideCost
                            : pierced               ? kPiercedSlideCost
                                                    : kOtherSlideCost;
+  const float weight = on_curve ? kCurveWeight : 1.0f;
   const Vec3f& n = target.normals[v];
-  return offset * slide_cost + n * ((1 - slide_cost) * Dot(offset, n));
+  return (offset * slide_cost + n * ((1 - slide_cost) * Dot(offset, n))) * weight;
 }
 
 // Half the gradient of the distortion with respect to the positions of every level 0 .. L, all finer details staying as they are:
