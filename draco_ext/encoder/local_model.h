@@ -13,7 +13,7 @@ namespace lacerta {
 // The metric of SurfaceTarget at a vertex, applied to an offset. Sliding along the surface costs a share of what leaving it
 // costs: little where the vertex was found by piercing, so that vertices just do not drift; much where it was not, since the
 // surface is not flat there in the sense that planes presume. Where vertices are kept, what suits tangential steps of twice the
-// normal one.
+// normal one. On curves all directions matter, and more than the area at them says (docs/decisions/0008-curves.md).
 inline Vec3f Weigh(const SurfaceTarget& target, size_t v, const Vec3f& offset) {
   constexpr float kPiercedSlideCost = 0.05f, kOtherSlideCost = 0.15f, kKeptSlideCost = 0.25f, kCurveSlideCost = 0.5f;
   constexpr float kCurveWeight = 4.0f;  // a border is seen, though hardly any area lies at it
