@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "draco/decoded_distance.h"
+
 namespace lacerta {
 namespace {
 
@@ -49,8 +51,7 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda) {
   const double estimate = Psnr(std::sqrt(attempt.stream.plane_distortion + remesh_distance * remesh_distance), meter_.diagonal());
   if (!offset_) {
     constexpr uint64_t kRoughSamples = 50'000;
-    LACERTA_ASSIGN_OR_RETURN(const double rough, MeasurePsnr(attempt, kRoughSamples));
-    offset_ = rough - estimate;
+    offset_ = MeasurePsnr(attempt, kRoughSamples) - estimate;
   }
   attempt.psnr = estimate + *offset_;
   attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : estimate;
@@ -58,11 +59,8 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda) {
   return attempt;
 }
 
-StatusOr<double> CandidateSearch::MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const {
-  const TriangleMesh mesh = attempt.stream.FinestMesh();
-  const StatusOr<SurfaceDistance> distance = meter_.Measure(mesh, SurfaceDistanceOptions::RmsOnly(num_samples));
-  // So coarse a lattice may leave no area at all to measure: as far off as the surface is large.
-  return Psnr(distance.ok() ? distance.value().Rms() : meter_.diagonal(), meter_.diagonal());
+double CandidateSearch::MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const {
+  return Psnr(DecodedDistance(meter_, attempt.stream.FinestMesh(), SurfaceDistanceOptions::RmsOnly(num_samples)), meter_.diagonal());
 }
 
 CandidateSearch::Bracket CandidateSearch::AroundGoal() const {
@@ -164,7 +162,7 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
         KeepStepsAtJump();
         continue;
       }
-      LACERTA_ASSIGN_OR_RETURN(attempt.psnr, MeasurePsnr(attempt, kSamples));
+      attempt.psnr = MeasurePsnr(attempt, kSamples);
       if (by_estimate) offset_ = attempt.psnr - attempt.value;
       if (!by_estimate) attempt.value = values_[log_lambda] = attempt.psnr;
       unmeasured.reset();
@@ -173,7 +171,7 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
     KeepStepsAtJump();
   }
   if (unmeasured && !(best && is_met(*best))) {  // out of tries: the last one may be the nearest
-    LACERTA_ASSIGN_OR_RETURN(unmeasured->psnr, MeasurePsnr(*unmeasured, kSamples));
+    unmeasured->psnr = MeasurePsnr(*unmeasured, kSamples);
     consider(std::move(*unmeasured));
   }
   MeasuredStream result;

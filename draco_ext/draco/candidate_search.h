@@ -52,7 +52,7 @@ class CandidateSearch {
     double value = 0;  // as in values_
   };
   StatusOr<Attempt> Try(double log_lambda);
-  StatusOr<double> MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const;
+  double MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const;
   double Goal() const;  // the value aimed at
   double TypicalSlope() const;
   // The attempts next to the goal: the coarsest that is not under it and the finest that is under it; values fall as lambda

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "draco/custom_form.h"
+#include "draco/decoded_distance.h"
 #include "draco/rate_control.h"
 #include "draco/still_part.h"
 #include "draco/subdivided_input.h"
@@ -21,8 +22,6 @@
 namespace lacerta {
 namespace {
 
-constexpr size_t kFewestTriangles = 500;  // worth a base and levels
-
 // Measured error of every level that `stream` decodes to.
 Status ReportLevels(const SurfaceDistanceMeter& meter, const CodedStream& stream, EncodeReport* report) {
   uint64_t bytes = 0;
@@ -31,9 +30,7 @@ Status ReportLevels(const SurfaceDistanceMeter& meter, const CodedStream& stream
     constexpr uint64_t kCoarseSamples = 50'000;  // far from the input, where few tell as much as many
     const SurfaceDistanceOptions options =
         level < stream.decoded.num_levels ? SurfaceDistanceOptions::RmsOnly(kCoarseSamples) : SurfaceDistanceOptions::RmsOnly();
-    const StatusOr<SurfaceDistance> measured = meter.Measure(mesh, options);
-    // A base on so coarse a lattice that it has no area is as far off as the surface is large.
-    const double distance = measured.ok() ? measured.value().Rms() : meter.diagonal();
+    const double distance = DecodedDistance(meter, mesh, options);
     bytes += stream.part_sizes[static_cast<size_t>(level)];
     report->levels.push_back({mesh.positions.size(), mesh.triangles.size(), bytes, distance, Psnr(distance, meter.diagonal())});
   }
@@ -101,7 +98,7 @@ StatusOr<EncodedMesh> InForm(StreamForm form, EncodedMesh mesh) {
 // The mesh on its own connectivity where that is subdivided and reaches the target; none else.
 std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter,
                                              const ResolvedTarget& target, EncodeMode mode) {
-  if (mesh.triangles.size() < kFewestTriangles) return std::nullopt;
+  if (mesh.triangles.size() < SurfacePartsOptions().fewest_faces) return std::nullopt;
   const std::optional<Unsubdivided> split = UndoSubdivision(mesh);
   if (!split) return std::nullopt;
   StatusOr<ChosenStream> chosen = CodeSubdivided(mesh, *split, meter, target, mode);

@@ -94,9 +94,6 @@ class Ladder {
     }
   }
 
-  // In the unit of scores. Neighbouring rungs are rarely further from the smooth curve of all rungs.
-  double MuchWorse() const { return target_.is_rate ? 0.3 : 0.03; }
-
   // A rung of FindBest, made anew where it was let go of.
   StatusOr<const Rung*> Get(int number) {
     Rung& rung = rungs_.at(number);
@@ -105,6 +102,9 @@ class Ladder {
   }
 
  private:
+  // In the unit of scores. Neighbouring rungs are rarely further from the smooth curve of all rungs.
+  double MuchWorse() const { return target_.is_rate ? 0.3 : 0.03; }
+
   static void LetGo(Rung* rung) {
     rung->search.reset();
     rung->candidate.reset();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "draco/simplified_size.h"
 #include "geometry/triangle_tree.h"
 #include "lacerta/clean.h"
 #include "lacerta/surface_distance.h"
@@ -33,15 +34,9 @@ TriangleMesh Simplified(const TriangleMesh& mesh, double distance) {
   const StatusOr<SurfaceDistanceMeter> meter = SurfaceDistanceMeter::Create(mesh);
   if (!meter.ok()) return mesh;  // no area: nothing to measure, and hardly anything to save
   const SimplificationSequence sequence(mesh);
-  double low = std::log(sequence.fewest_triangles()), high = std::log(sequence.num_input_triangles());
-  while (high - low > 0.05) {
-    const double middle = (low + high) / 2;
-    constexpr uint64_t kSamples = 20'000;
-    const StatusOr<SurfaceDistance> measured =
-        meter.value().Measure(sequence.MeshWith(static_cast<uint32_t>(std::exp(middle))), SurfaceDistanceOptions::RmsOnly(kSamples));
-    (measured.ok() && measured.value().Rms() <= distance ? high : low) = middle;
-  }
-  return sequence.MeshWith(static_cast<uint32_t>(std::ceil(std::exp(high))));
+  constexpr uint64_t kSamples = 20'000;
+  constexpr double kTolerance = 0.05;
+  return sequence.MeshWith(static_cast<uint32_t>(std::ceil(SimplifiedSize(sequence, meter.value(), distance, kSamples, kTolerance))));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "lacerta/mesh.h"
-#include "lacerta/status.h"
 
 namespace lacerta {
 

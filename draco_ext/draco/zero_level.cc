@@ -12,6 +12,7 @@
 #include "draco/mesh_conversion.h"
 #include "draco/smallest_stream.h"
 #include "draco/stock_stream.h"
+#include "geometry/bounding_box.h"
 
 namespace lacerta {
 namespace {
@@ -23,14 +24,7 @@ struct GridMesh {
 };
 
 StatusOr<GridMesh> Quantize(const TriangleMesh& mesh, int bits) {
-  Vec3f low = mesh.positions[0];
-  Vec3f high = low;
-  for (const Vec3f& p : mesh.positions) {
-    for (int c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], p[c]);
-      high[c] = std::max(high[c], p[c]);
-    }
-  }
+  const auto [low, high] = BoundsOf(mesh.positions);
   GridMesh result;
   result.grid.origin = low;
   const Vec3f size = high - low;

@@ -7,6 +7,8 @@
 #include <memory>
 #include <utility>
 
+#include "draco/decoded_distance.h"
+#include "draco/simplified_size.h"
 #include "draco/zero_level.h"
 #include "draco/zero_level_candidate.h"
 #include "remesh/simplify.h"
@@ -26,7 +28,7 @@ class ZeroLevelSearch {
   // Looks for the best number of triangles. most_bytes: of a stream that there is at the PSNR; false where it is hopeless to
   // become smaller than that.
   StatusOr<bool> FindSize(double most_bytes) {
-    LACERTA_ASSIGN_OR_RETURN(const uint32_t first, FirstSize());
+    const uint32_t first = FirstSize();
     LACERTA_RETURN_IF_ERROR(Look(first));
     const Trial& trial = tried_.at(first);
     if (!target_.is_rate && trial.meets && static_cast<double>(trial.coding.bytes) > kHopeless * most_bytes) return false;
@@ -98,17 +100,12 @@ class ZeroLevelSearch {
   }
 
   // The size at which the simplified mesh, before the fit, is at the target but for what the fit usually gains.
-  StatusOr<uint32_t> FirstSize() const {
+  uint32_t FirstSize() const {
     constexpr double kUsualBytesPerTriangle = 1.1, kUsualGain = 1.5;
     if (target_.is_rate) return Clamped(target_.bytes / kUsualBytesPerTriangle);
-    double low = std::log(Clamped(0)), high = std::log(Clamped(1e18));
-    while (high - low > 0.1) {
-      const double middle = (low + high) / 2;
-      const TriangleMesh simplified = sequence_.MeshWith(Clamped(std::exp(middle)));
-      const StatusOr<SurfaceDistance> distance = meter_.Measure(simplified, SurfaceDistanceOptions::RmsOnly(4000));
-      (distance.ok() && Square(distance.value().Rms()) <= kUsualGain * distortion_ ? high : low) = middle;
-    }
-    return Clamped(std::exp(high));
+    constexpr uint64_t kSamples = 4000;
+    constexpr double kTolerance = 0.1;
+    return Clamped(SimplifiedSize(sequence_, meter_, std::sqrt(kUsualGain * distortion_), kSamples, kTolerance));
   }
 
   StatusOr<Trial> Try(uint32_t triangles) {
@@ -184,9 +181,7 @@ class ZeroLevelSearch {
     ZeroLevelStream result;
     result.stream = std::move(coded.stream);
     result.mesh = std::move(coded.mesh);
-    // So coarse a lattice may leave no area at all to measure: infinitely far then.
-    const StatusOr<SurfaceDistance> distance = meter_.Measure(result.mesh, SurfaceDistanceOptions::RmsOnly());
-    result.distance = distance.ok() ? distance.value().Rms() : meter_.diagonal();
+    result.distance = DecodedDistance(meter_, result.mesh);
     result.psnr = Psnr(result.distance, meter_.diagonal());
     result.meets_target = target_.is_rate ? static_cast<double>(result.stream.size()) <= target_.bytes : result.psnr >= target_.psnr;
     return result;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <queue>
 
+#include "geometry/bounding_box.h"
 #include "remesh/quadric.h"
 
 namespace lacerta {
@@ -84,13 +85,8 @@ Decimator::Decimator(const TriangleMesh& mesh, const Topology& topology, const D
       blocked_(mesh.positions.size(), 0),
       history_(topology) {
   // Centered and scaled to unit size: quadrics lose their digits far from the origin.
-  Vec3d low = Vec3Cast<double>(mesh.positions[0]), high = low;
-  for (const Vec3f& p : mesh.positions) {
-    for (int c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], double{p[c]});
-      high[c] = std::max(high[c], double{p[c]});
-    }
-  }
+  const BoundingBox box = BoundsOf(mesh.positions);
+  const Vec3d low = Vec3Cast<double>(box.low), high = Vec3Cast<double>(box.high);
   const double diagonal = Norm(high - low);
   positions_.reserve(mesh.positions.size());
   for (const Vec3f& p : mesh.positions) positions_.push_back((Vec3Cast<double>(p) - low) * (1 / diagonal) - Vec3d{0.5, 0.5, 0.5});

@@ -6,25 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/triangle_points.h"
 #include "lacerta/surface_distance.h"
 
 namespace lacerta {
 namespace {
 
 constexpr size_t kBlockSize = 1024;
-
-// Low-discrepancy points of a triangle: the R2 sequence [Roberts 2018], folded.
-Vec3d BarycentricSample(uint64_t i) {
-  const double n = static_cast<double>(i);
-  double u = 0.5 + n * 0.7548776662466927, v = 0.5 + n * 0.5698402909980532;
-  u -= std::floor(u);
-  v -= std::floor(v);
-  if (u + v > 1) {
-    u = 1 - u;
-    v = 1 - v;
-  }
-  return {1 - u - v, u, v};
-}
 
 // A point on a mesh with the plane that it is to meet: residual = normal . (point - target).
 struct Residual {
@@ -77,7 +65,7 @@ std::vector<OwnSample> SampleFaces(const TriangleMesh& mesh, const std::vector<u
     constexpr size_t kFewest = 3;
     if (every_face) count = std::max(count, kFewest);
     const double share = every_face ? areas[f] / total / static_cast<double>(count) : 0;
-    for (size_t i = 0; i < count; ++i) result.push_back({f, BarycentricSample(n++), share});
+    for (size_t i = 0; i < count; ++i) result.push_back({f, TrianglePoint(n++, 0.5), share});
   }
   if (!every_face) {
     for (OwnSample& s : result) s.share = 1 / static_cast<double>(result.size());

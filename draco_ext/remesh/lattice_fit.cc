@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/bounding_box.h"
 #include "remesh/mesh_fit.h"
 
 namespace lacerta {
@@ -14,11 +15,7 @@ class LatticeDescent {
  public:
   LatticeDescent(const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate)
       : mesh_(mesh), model_(model), neighbors_(neighbors), rate_(rate) {
-    Vec3f low = mesh.positions[0];
-    for (const Vec3f& p : mesh.positions) {
-      for (int c = 0; c < 3; ++c) low[c] = std::min(low[c], p[c]);
-    }
-    origin_ = Vec3Cast<double>(low);
+    origin_ = Vec3Cast<double>(BoundsOf(mesh.positions).low);
     lattice_.reserve(mesh.positions.size());
     moves_.resize(mesh.positions.size());
     for (uint32_t v = 0; v < mesh.positions.size(); ++v) {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <queue>
 
+#include "geometry/bounding_box.h"
 #include "remesh/quadric.h"
 
 namespace lacerta {
@@ -98,13 +99,8 @@ Simplifier::Simplifier(const TriangleMesh& mesh, SimplificationSequence* sequenc
       valence_(mesh.positions.size(), 0),
       on_border_(mesh.positions.size(), 0),
       num_alive_(static_cast<uint32_t>(mesh.triangles.size())) {
-  Vec3d low = Vec3Cast<double>(mesh.positions[0]), high = low;
-  for (const Vec3f& p : mesh.positions) {
-    for (int c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], double{p[c]});
-      high[c] = std::max(high[c], double{p[c]});
-    }
-  }
+  const BoundingBox box = BoundsOf(mesh.positions);
+  const Vec3d low = Vec3Cast<double>(box.low), high = Vec3Cast<double>(box.high);
   const double diagonal = Norm(high - low);
   center_ = (low + high) * 0.5;
   if (diagonal > 0) scale_ = diagonal;

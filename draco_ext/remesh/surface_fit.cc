@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/subdivision.h"
+#include "geometry/triangle_points.h"
 #include "geometry/triangle_tree.h"
 
 namespace lacerta {
@@ -34,12 +35,10 @@ std::vector<SurfacePoint> SpreadPoints(const TriangleMesh& mesh, double count) {
   double due = 0;
   for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
     for (due += count * areas[f] / total; due >= 1; due -= 1) {
-      const auto n = static_cast<double>(points.size());
-      double u = std::fmod(n * 0.7548776662466927, 1.0), v = std::fmod(n * 0.5698402909980532, 1.0);  // R2 sequence
-      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const Vec3f weights = Vec3Cast<float>(TrianglePoint(points.size(), 0));
       SurfacePoint p;
       p.face = f;
-      p.barycentric = {static_cast<float>(1 - u - v), static_cast<float>(u), static_cast<float>(v)};
+      p.barycentric = {weights.x, weights.y, weights.z};
       points.push_back(p);
     }
   }
