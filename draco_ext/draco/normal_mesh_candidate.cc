@@ -64,9 +64,9 @@ StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface
   options.num_levels = num_levels;
   std::vector<Vec3f> positions;
   for (const uint32_t v : base.vertex_map) positions.push_back(nominal.positions[v]);
+  domain.Join(JoinedVertices(positions));
   NormalMesh remesh = Pierce(input.surface, domain, positions, options);
   remesh.mesh.base_triangles = base.mesh.triangles;
-  remesh.mesh.tags.joined = JoinedVertices(positions);
   if (!input.still.triangles.empty()) {
     for (const Triangle& t : base.mesh.triangles) remesh.mesh.tags.still.push_back(is_still(t));
   }

@@ -84,6 +84,11 @@ void BaseDomain::Reorder(const std::vector<uint32_t>& vertex_map, const std::vec
   BuildTables();
 }
 
+void BaseDomain::Join(std::vector<uint32_t> joined) {
+  tags_.joined = std::move(joined);
+  topology_ = BuildTopology(num_vertices(), triangles_, tags_).value();
+}
+
 std::vector<Vec3f> BaseDomain::PositionsOn(const TriangleMesh& input) const {
   std::vector<Vec3f> positions;
   for (const uint32_t v : input_vertex_) positions.push_back(v == kNone ? Vec3f() : input.positions[v]);

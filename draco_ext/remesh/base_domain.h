@@ -25,7 +25,7 @@ class BaseDomain {
   const std::vector<Triangle>& triangles() const { return triangles_; }
   // Input vertex at which a base vertex stands; kNone for those that Reorder has put in.
   uint32_t input_vertex(uint32_t v) const { return input_vertex_[v]; }
-  // With creases and corners.
+  // With creases and corners, and with joined borders after Join.
   const Topology& topology() const { return topology_; }
   // Positions of the base vertices on the input; the origin for those that Reorder has put in.
   std::vector<Vec3f> PositionsOn(const TriangleMesh& input) const;
@@ -35,6 +35,10 @@ class BaseDomain {
   // numbers) gives the new order and rotation of the faces. Numbers from num_vertices() on stand for vertices that are not of the
   // domain: they become isolated ones.
   void Reorder(const std::vector<uint32_t>& vertex_map, const std::vector<Triangle>& triangles);
+
+  // Joins the borders of a cut (BaseTags::joined): finer levels number the vertices of joined borders differently, so this has to be
+  // known before anything is refined. After Reorder, which forgets it. joined: #V0.
+  void Join(std::vector<uint32_t> joined);
 
   // Point of the domain (face: base face) of a point on a face of the input, and back.
   DomainPoint FromInput(const DomainPoint& on_input) const;

@@ -101,15 +101,15 @@ std::vector<uint32_t> JoinedVertices(const BaseDomain& domain, const std::vector
   return joined;
 }
 
-Attempt Remesh(const Input& input, const BaseDomain& domain, int levels) {
+Attempt Remesh(const Input& input, BaseDomain domain, int levels) {
   Attempt attempt;
+  domain.Join(JoinedVertices(domain, input.parts.source_vertex));
   for (uint32_t v = 0; v < domain.num_vertices(); ++v) attempt.input_vertex.push_back(domain.input_vertex(v));
   PiercingOptions options;
   options.num_levels = levels;
   const double start = Now();
   attempt.pierced = Pierce(input.surface, domain, domain.PositionsOn(input.parts.refined), options);
   attempt.pierce_seconds = Now() - start;
-  attempt.pierced.mesh.tags.joined = JoinedVertices(domain, input.parts.source_vertex);
   attempt.fitted = attempt.pierced;
   const double pierced = Now();
   FitToInput(input.surface, SurfaceFitOptions(), &attempt.fitted);
@@ -207,9 +207,9 @@ Status Report(const std::string& path, const Options& options) {
     const double limit = 2.0 * static_cast<double>(input.parts.refined.positions.size());
     std::optional<SurfaceDistanceMeter> meter;
     for (int levels = options.levels ? options.levels : 4; levels > 0 && !(best && levels < 3); --levels) {
-      const BaseDomain domain = ChooseDomain(input, levels, limit);
+      BaseDomain domain = ChooseDomain(input, levels, limit);
       if (FinestVertices(domain, levels) > limit && !options.levels && levels > 1) continue;
-      Attempt attempt = Remesh(input, domain, levels);
+      Attempt attempt = Remesh(input, std::move(domain), levels);
       if (!best) {
         Print("bytes_per_triangle", PeakBytes() / static_cast<double>(cleaned.mesh.triangles.size()), "%.0f");
         LACERTA_ASSIGN_OR_RETURN(meter, SurfaceDistanceMeter::Create(input.parts.refined));
