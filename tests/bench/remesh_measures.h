@@ -47,7 +47,7 @@ struct ReversedShare {
   // the sum of the input's normals at their own vertices.
   double confirmed = 0;
 };
-// normals: #V of the remesh, the input's where the vertices were taken from it.
+// normals: #V of the remesh, the input's where the vertices were taken from it; zero where it has several.
 ReversedShare MeasureReversed(const InputSurface& input, const TriangleMesh& remesh, const std::vector<Vec3f>& normals);
 
 }  // namespace lacerta

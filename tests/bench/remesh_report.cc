@@ -170,13 +170,23 @@ void PrintInput(const TriangleMesh& cleaned, const Input& input) {
   Print("crease_edges", creases);
 }
 
+// The normals of a remesh, zero at the vertices of creases, where the input has several.
+std::vector<Vec3f> NormalsOffCreases(std::vector<Vec3f> normals, const Topology& topology) {
+  for (uint32_t e = 0; e < topology.num_edges(); ++e) {
+    if (!topology.on_curve[e] || topology.is_border(e)) continue;
+    for (const uint32_t v : topology.edges[e]) normals[v] = {};
+  }
+  return normals;
+}
+
 void PrintRemesh(const Input& input, const Attempt& best, const SurfaceDistanceMeter& meter) {
   const NormalMesh& fitted = best.fitted;
   const TriangleMesh finest = Finest(fitted);
   Topology topology = BuildTopology(fitted.mesh.num_base_vertices, fitted.mesh.base_triangles, fitted.mesh.tags).value();
   for (int level = 0; level < fitted.mesh.num_levels; ++level) topology = Refine(topology);
   const SurfaceDistance distance = DistanceOf(meter, fitted);
-  const ReversedShare reversed = MeasureReversed(input.surface, finest, fitted.surface_normals);
+  const std::vector<Vec3f> normals = NormalsOffCreases(fitted.surface_normals, topology);
+  const ReversedShare reversed = MeasureReversed(input.surface, finest, normals);
   const double diagonal = meter.diagonal();
   Print("base_vertices", uint64_t{fitted.mesh.num_base_vertices});
   Print("levels", static_cast<uint64_t>(fitted.mesh.num_levels));
@@ -188,7 +198,7 @@ void PrintRemesh(const Input& input, const Attempt& best, const SurfaceDistanceM
   Print("psnr_backward", Psnr(distance.backward.rms, diagonal), "%.2f");
   Print("reversed", reversed.confirmed, "%.3g");
   Print("reversed_at_closest", reversed.at_closest, "%.3g");
-  Print("reversed_pierced", MeasureReversed(input.surface, Finest(best.pierced), fitted.surface_normals).confirmed, "%.3g");
+  Print("reversed_pierced", MeasureReversed(input.surface, Finest(best.pierced), normals).confirmed, "%.3g");
   Print("not_finite", NumNotFinite(finest.positions));
   Print("topology_changes", NumChanged(input, best));
   PrintCurve("border", CurveDistance(input.parts.refined, input.parts.topology, finest, topology, Curve::kBorder), diagonal);
