@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "common/subdivision.h"
 #include "geometry/triangle_points.h"
 #include "geometry/triangle_tree.h"
+#include "remesh/reversal.h"
 
 namespace lacerta {
 namespace {
@@ -128,15 +130,22 @@ std::vector<uint8_t> CopiedVertices(const BaseTags& tags) {
   return copied;
 }
 
-// Twice the area of a triangle seen along the normals of the input at its corners; below zero where it is turned over.
-float FacingArea(const Triangle& t, const std::vector<Vec3f>& positions, const std::vector<Vec3f>& normals) {
-  const Vec3f &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
-  return Dot(Cross(b - a, c - a), Normalized(normals[t[0]] + normals[t[1]] + normals[t[2]]));
+// Whether a triangle that looked where the input looks is turned over by a move of its corners.
+bool IsTurnedOver(const InputSurface& surface, const Triangle& t, const std::vector<Vec3f>& before, const std::vector<Vec3f>& after,
+                  const std::vector<Vec3f>& normals) {
+  const auto at = [&](const std::vector<Vec3f>& positions) -> std::array<Vec3f, 3> { return {positions[t[0]], positions[t[1]], positions[t[2]]}; };
+  const Vec3f old_normal = AreaNormal(at(before)), normal = AreaNormal(at(after));
+  const Vec3f facing = normals[t[0]] + normals[t[1]] + normals[t[2]];
+  const float agreement = Dot(normal, facing);
+  if (agreement < 0 && Dot(old_normal, facing) >= 0) return true;
+  constexpr float kSafeCosine = 0.8f;  // triangles that agree more are not looked up on the input
+  if (agreement >= kSafeCosine * Norm(normal) * Norm(facing)) return false;
+  return IsReversed(surface, at(after)) && !IsReversed(surface, at(before));
 }
 
 // Moves the vertices of `mesh` along their normals, but less far, in the end not at all, at triangles that would be turned over by
 // it.
-void MoveUnlessTurned(const std::vector<double>& moves, const std::vector<Vec3f>& normals, TriangleMesh* mesh) {
+void MoveUnlessTurned(const InputSurface& surface, const std::vector<double>& moves, const std::vector<Vec3f>& normals, TriangleMesh* mesh) {
   constexpr int kRounds = 6;
   const std::vector<Vec3f> before = mesh->positions;
   std::vector<uint8_t> halvings(moves.size(), 0);
@@ -145,10 +154,14 @@ void MoveUnlessTurned(const std::vector<double>& moves, const std::vector<Vec3f>
       const double share = halvings[v] < kRounds ? std::ldexp(1.0, -halvings[v]) : 0.0;
       mesh->positions[v] = before[v] + normals[v] * static_cast<float>(moves[v] * share);
     }
+    std::vector<uint8_t> turned_triangle(mesh->triangles.size());
+    tbb::parallel_for(size_t{0}, turned_triangle.size(), [&](size_t f) {
+      turned_triangle[f] = IsTurnedOver(surface, mesh->triangles[f], before, mesh->positions, normals);
+    });
     std::vector<uint8_t> turned(moves.size(), 0);
-    for (const Triangle& t : mesh->triangles) {
-      const float area = FacingArea(t, mesh->positions, normals);
-      if (area < 0 && FacingArea(t, before, normals) >= 0) turned[t[0]] = turned[t[1]] = turned[t[2]] = 1;
+    for (size_t f = 0; f < turned_triangle.size(); ++f) {
+      if (!turned_triangle[f]) continue;
+      for (const uint32_t v : mesh->triangles[f]) turned[v] = 1;
     }
     if (std::find(turned.begin(), turned.end(), 1) == turned.end()) return;
     for (size_t v = 0; v < moves.size(); ++v) halvings[v] = static_cast<uint8_t>(halvings[v] + turned[v]);
@@ -178,7 +191,7 @@ void FitToInput(const InputSurface& surface, const SurfaceFitOptions& options, N
   for (size_t v = 0; v < pinned.size(); ++v) {
     if (pinned[v]) moves[v] = 0;
   }
-  MoveUnlessTurned(moves, remesh->surface_normals, &finest);
+  MoveUnlessTurned(surface, moves, remesh->surface_normals, &finest);
   mesh.positions = std::move(finest.positions);
 }
 
