@@ -15,10 +15,14 @@
 #include "lacerta/surface_distance.h"
 #include "remesh/base_domain.h"
 #include "remesh/piercing.h"
+#include "remesh/reversal.h"
 #include "remesh/surface_fit.h"
 
 namespace lacerta {
 namespace {
+
+// Of a base that is made finer where the remesh is reversed: a surface that needs more is better served by the next size.
+constexpr double kLargestGrowth = 1.25;
 
 TriangleMesh Together(TriangleMesh a, const TriangleMesh& b) {
   const auto offset = static_cast<uint32_t>(a.positions.size());
@@ -37,23 +41,23 @@ std::vector<uint32_t> JoinedVertices(const std::vector<Vec3f>& positions) {
   return JoinsAnything(joined) ? joined : std::vector<uint32_t>();
 }
 
-}  // namespace
+// A base mesh at a cut of the history, the normal mesh over it, and what of that is reversed.
+struct Remeshed {
+  CodedBase base;
+  NormalMesh mesh;
+  ReversedPart reversed;
+};
 
-NormalMeshCandidate::NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh)
-    : base_(std::move(base)),
-      normal_mesh_(std::move(normal_mesh)),
-      target_(MakeSurfaceTarget(normal_mesh_)),
-      detail_scales_(DetailScales(target_)) {}
-
-StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels) {
+// held: grows where another remesh, without those collapses, is due; *is_due says so.
+StatusOr<Remeshed> RemeshAt(const RefinableSurface& input, uint32_t time, int num_levels, std::vector<uint32_t>* held, bool* is_due) {
   const TriangleMesh& mesh = input.surface.mesh();
-  const auto num_vertices = static_cast<uint32_t>(mesh.positions.size());
-  const uint32_t time = std::min(input.history.num_collapses(), num_vertices - std::min(num_vertices, num_base_vertices));
-  BaseDomain domain(input.history, time);
+  BaseDomain domain(input.history, input.history.CutWithout(*held, time));
   const uint32_t num_refined = domain.num_vertices();
   const TriangleMesh nominal = Together({domain.PositionsOn(mesh), domain.triangles()}, input.still);
   const auto nominal_step = static_cast<float>(kNominalStep * BoundingBoxDiagonal(nominal));
-  LACERTA_ASSIGN_OR_RETURN(CodedBase base, EncodeBaseMesh(RoundToLattice(nominal, nominal_step)));
+  Remeshed result;
+  LACERTA_ASSIGN_OR_RETURN(result.base, EncodeBaseMesh(RoundToLattice(nominal, nominal_step)));
+  const CodedBase& base = result.base;
 
   // From here on in the order in which decoders get the base.
   const auto is_still = [&](const Triangle& t) { return base.vertex_map[t[0]] >= num_refined; };
@@ -65,13 +69,38 @@ StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface
   std::vector<Vec3f> positions;
   for (const uint32_t v : base.vertex_map) positions.push_back(nominal.positions[v]);
   domain.Join(JoinedVertices(positions));
-  NormalMesh remesh = Pierce(input.surface, domain, positions, options);
-  remesh.mesh.base_triangles = base.mesh.triangles;
+  result.mesh = Pierce(input.surface, domain, positions, options);
+  result.mesh.mesh.base_triangles = base.mesh.triangles;
   if (!input.still.triangles.empty()) {
-    for (const Triangle& t : base.mesh.triangles) remesh.mesh.tags.still.push_back(is_still(t));
+    for (const Triangle& t : base.mesh.triangles) result.mesh.mesh.tags.still.push_back(is_still(t));
   }
-  FitToInput(input.surface, SurfaceFitOptions(), &remesh);
-  return NormalMeshCandidate(std::move(base), std::move(remesh));
+  FitToInput(input.surface, SurfaceFitOptions(), &result.mesh);
+  result.reversed = FindReversed(input.surface, result.mesh);
+  *is_due = HoldReversed(result.reversed, domain, held);
+  return result;
+}
+
+}  // namespace
+
+NormalMeshCandidate::NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh)
+    : base_(std::move(base)),
+      normal_mesh_(std::move(normal_mesh)),
+      target_(MakeSurfaceTarget(normal_mesh_)),
+      detail_scales_(DetailScales(target_)) {}
+
+StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels) {
+  const auto num_vertices = static_cast<uint32_t>(input.surface.mesh().positions.size());
+  const uint32_t time = std::min(input.history.num_collapses(), num_vertices - std::min(num_vertices, num_base_vertices));
+  std::vector<uint32_t> held;
+  bool is_due = false;
+  LACERTA_ASSIGN_OR_RETURN(Remeshed best, RemeshAt(input, time, num_levels, &held, &is_due));
+  const double largest_base = kLargestGrowth * best.mesh.mesh.num_base_vertices;
+  for (int round = 1; is_due && round < kReversalRounds; ++round) {
+    LACERTA_ASSIGN_OR_RETURN(Remeshed other, RemeshAt(input, time, num_levels, &held, &is_due));
+    if (other.mesh.mesh.num_base_vertices > largest_base) break;
+    if (other.reversed.share < best.reversed.share) best = std::move(other);
+  }
+  return NormalMeshCandidate(std::move(best.base), std::move(best.mesh));
 }
 
 // The base on a lattice of that step, or of one so much finer that the points at which cuts are closed are no others' too.

@@ -6,8 +6,8 @@
 
 namespace lacerta {
 
-BaseDomain::BaseDomain(const CollapseHistory& history, uint32_t time) : history_(history), time_(time) {
-  history_face_ = history.FacesAt(time);
+BaseDomain::BaseDomain(const CollapseHistory& history, HistoryCut cut) : history_(history), cut_(std::move(cut)) {
+  history_face_ = history.FacesAt(cut_);
   rotation_.assign(history_face_.size(), 0);
   for (const uint32_t f : history_face_) {
     for (const uint32_t v : history.face(f)) input_vertex_.push_back(v);
@@ -96,7 +96,7 @@ std::vector<Vec3f> BaseDomain::PositionsOn(const TriangleMesh& input) const {
 }
 
 DomainPoint BaseDomain::FromInput(const DomainPoint& on_input) const {
-  const DomainPoint p = history_.Forward({on_input.face, ClampWeights(on_input.barycentric)}, time_);
+  const DomainPoint p = history_.Forward({on_input.face, ClampWeights(on_input.barycentric)}, cut_);
   const uint32_t face = base_face_[p.face];
   DomainPoint result{face, {}};
   for (int k = 0; k < 3; ++k) result.barycentric[k] = p.barycentric[(k + rotation_[face]) % 3];

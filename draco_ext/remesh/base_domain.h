@@ -18,13 +18,15 @@ using ChartPoint = Vec3d;
 
 class BaseDomain {
  public:
-  // The base mesh after the first `time` collapses of `history`, which must outlive the domain.
-  BaseDomain(const CollapseHistory& history, uint32_t time);
+  // The base mesh at a cut of `history`, which must outlive the domain.
+  BaseDomain(const CollapseHistory& history, HistoryCut cut);
 
   uint32_t num_vertices() const { return static_cast<uint32_t>(input_vertex_.size()); }
   const std::vector<Triangle>& triangles() const { return triangles_; }
   // Input vertex at which a base vertex stands; kNone for those that Reorder has put in.
   uint32_t input_vertex(uint32_t v) const { return input_vertex_[v]; }
+  // The collapse that made a base face, or kNone where it is one of the input's.
+  uint32_t created_by(uint32_t f) const { return history_.created_by(history_face_[f]); }
   // With creases and corners, and with joined borders after Join.
   const Topology& topology() const { return topology_; }
   // Positions of the base vertices on the input; the origin for those that Reorder has put in.
@@ -54,7 +56,7 @@ class BaseDomain {
   BaseTags FindTags() const;
 
   const CollapseHistory& history_;
-  uint32_t time_;
+  HistoryCut cut_;
   std::vector<Triangle> triangles_;          // #F0 base vertices
   std::vector<uint32_t> input_vertex_;       // #V0
   std::vector<uint32_t> history_face_;       // #F0

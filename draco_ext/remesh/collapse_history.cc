@@ -79,11 +79,31 @@ uint32_t CollapseHistory::Append(uint32_t removed, const std::vector<uint32_t>& 
   return first_new;
 }
 
-std::vector<uint32_t> CollapseHistory::FacesAt(uint32_t time) const {
+HistoryCut CollapseHistory::CutWithout(const std::vector<uint32_t>& held, uint32_t time) const {
+  HistoryCut cut(time);
+  if (held.empty()) return cut;
+  cut.held.assign(time, 0);
+  for (const uint32_t c : held) {
+    if (c < time) cut.held[c] = 1;
+  }
+  for (uint32_t c = 0; c < time; ++c) {
+    const uint32_t* const old = &old_faces_[collapses_[c].first_ring];
+    for (int i = 0; i < collapses_[c].num_old_faces; ++i) {
+      const uint32_t creator = created_by_[old[i]];
+      if (creator != kNone && cut.held[creator] != 0) cut.held[c] = 1;
+    }
+  }
+  std::vector<Triangle> triangles;
+  for (const uint32_t f : FacesAt(cut)) triangles.push_back(faces_[f]);
+  const bool is_manifold = BuildTopology(static_cast<uint32_t>(roles_.size()), triangles).ok();
+  return is_manifold ? cut : HistoryCut(time);
+}
+
+std::vector<uint32_t> CollapseHistory::FacesAt(const HistoryCut& cut) const {
   std::vector<uint32_t> alive;
   for (uint32_t f = 0; f < faces_.size(); ++f) {
-    const bool born = created_by_[f] == kNone || created_by_[f] < time;
-    if (born && destroyed_by_[f] >= time) alive.push_back(f);  // kNone is the largest time of all
+    const bool born = created_by_[f] == kNone || cut.Has(created_by_[f]);
+    if (born && !cut.Has(destroyed_by_[f])) alive.push_back(f);  // kNone is the largest time of all
   }
   return alive;
 }
@@ -135,8 +155,8 @@ DomainPoint CollapseHistory::BackwardOnce(const DomainPoint& point, const Collap
   return result;
 }
 
-DomainPoint CollapseHistory::Forward(DomainPoint point, uint32_t time) const {
-  while (destroyed_by_[point.face] < time) point = ForwardOnce(point, collapses_[destroyed_by_[point.face]]);
+DomainPoint CollapseHistory::Forward(DomainPoint point, const HistoryCut& cut) const {
+  while (cut.Has(destroyed_by_[point.face])) point = ForwardOnce(point, collapses_[destroyed_by_[point.face]]);
   return point;
 }
 

@@ -33,6 +33,16 @@ struct Vec2d {
   double x = 0, y = 0;
 };
 
+// The collapses that lead to one of the meshes of a history: the first `time` ones, but for those that are held back.
+struct HistoryCut {
+  HistoryCut(uint32_t t) : time(t) {}  // not explicit: a time alone is a cut
+
+  uint32_t time;
+  std::vector<uint8_t> held;  // #time, 1 for those held back; or empty where none is
+
+  bool Has(uint32_t collapse) const { return collapse < time && (held.empty() || held[collapse] == 0); }
+};
+
 class CollapseHistory {
  public:
   // topology: of the input mesh, with its curves.
@@ -50,11 +60,19 @@ class CollapseHistory {
   bool is_curve(uint32_t f, int corner) const { return (curve_sides_[f] >> corner & 1) != 0; }
   CurveRole role(uint32_t input_vertex) const { return roles_[input_vertex]; }
 
-  // Faces that exist after the first `time` collapses, in increasing number.
-  std::vector<uint32_t> FacesAt(uint32_t time) const;
+  // The collapse that made a face, or kNone for those of the input.
+  uint32_t created_by(uint32_t f) const { return created_by_[f]; }
 
-  // The same point on a face that exists after the first `time` collapses, from an earlier face.
-  DomainPoint Forward(DomainPoint point, uint32_t time) const;
+  // The first `time` collapses without the `held` ones, nor those that build on them: a mesh that is finer in places. All others can be
+  // made without them: a collapse needs the faces of its own fan alone, and edges between vertices that stay are never lost. Only the
+  // number of faces at a vertex may be too small; where that breaks the manifold, nothing is held back.
+  HistoryCut CutWithout(const std::vector<uint32_t>& held, uint32_t time) const;
+
+  // Faces that exist at a cut, in increasing number.
+  std::vector<uint32_t> FacesAt(const HistoryCut& cut) const;
+
+  // The same point on a face that exists at a cut, from an earlier face.
+  DomainPoint Forward(DomainPoint point, const HistoryCut& cut) const;
   // The same point on a face of the input mesh, from any face.
   DomainPoint Backward(DomainPoint point) const;
 

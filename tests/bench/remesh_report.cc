@@ -1,7 +1,8 @@
 // Remeshes mesh files and prints what came of each as one line of JSON: remesh_report [--levels N] [--out FOLDER] FILE...
 //
-// Levels: 4 and 3, whichever comes closer to the input; 2 or 1 where no base is small enough for those. The base is as large as
-// it may be for a remesh of at most twice the vertices of the refined components. --levels: that number alone. --out: where to
+// Levels: 4 and 3, whichever comes closer to the input; 2 or 1 where no base is small enough for those, or too much of the remesh is
+// reversed. The base is as large as it may be for a remesh of at most twice the vertices of the refined components.
+// --levels: that number alone. --out: where to
 // write the finest levels, as NAME.ply. Peak memory is that of the process once the first remesh stands, before anything is
 // measured, so only that of the first file means anything.
 #include <sys/resource.h>
@@ -27,6 +28,7 @@
 #include "remesh/decimate.h"
 #include "remesh/input_surface.h"
 #include "remesh/piercing.h"
+#include "remesh/reversal.h"
 #include "remesh/surface_fit.h"
 #include "remesh/surface_parts.h"
 #include "remesh_measures.h"
@@ -73,6 +75,7 @@ struct Attempt {
   NormalMesh pierced, fitted;
   double pierce_seconds = 0, fit_seconds = 0;
   double psnr = 0;
+  double reversed = 0;  // share of the area, as the remesher finds it
 };
 
 double FinestVertices(const BaseDomain& domain, int levels) {
@@ -80,13 +83,14 @@ double FinestVertices(const BaseDomain& domain, int levels) {
   return static_cast<double>(SubdividedCounts({t.num_vertices, t.num_edges(), t.num_faces()}, levels).vertices);
 }
 
-// The domain with the largest base of which `levels` levels have at most `limit` vertices, or the coarsest if none has.
-BaseDomain ChooseDomain(const Input& input, int levels, double limit) {
+// The domain with the largest base of which `levels` levels have at most `limit` vertices, or the coarsest if none has; without some
+// collapses.
+BaseDomain ChooseDomain(const Input& input, int levels, double limit, const std::vector<uint32_t>& held) {
   const auto num_vertices = static_cast<double>(input.parts.refined.positions.size());
   double base = limit / std::pow(4.0, levels);
   for (;;) {
     const auto time = static_cast<uint32_t>(std::min<double>(input.history.num_collapses(), std::max(0.0, num_vertices - std::floor(base))));
-    BaseDomain domain(input.history, time);
+    BaseDomain domain(input.history, input.history.CutWithout(held, time));
     const double reached = FinestVertices(domain, levels);
     if (reached <= limit || time == input.history.num_collapses()) return domain;
     base = std::min(base * limit / reached, std::min<double>(base, domain.num_vertices()) - 1);
@@ -133,6 +137,41 @@ uint64_t NumChanged(const Input& input, const Attempt& attempt) {
     changed += topology.ok() ? NumChangedComponents(components, topology.value(), attempt.input_vertex) : 1;
   }
   return changed;
+}
+
+// Remeshes, again with a finer base where too much comes out reversed, as often as that helps; the remesh with the least of it. None
+// where no base is small enough, unless `anyhow`.
+std::optional<Attempt> RemeshWithin(const Input& input, int levels, double limit, bool anyhow) {
+  std::optional<Attempt> best;
+  std::vector<uint32_t> held;
+  for (int round = 0; round < kReversalRounds; ++round) {
+    const BaseDomain domain = ChooseDomain(input, levels, limit, held);
+    if (FinestVertices(domain, levels) > limit && !(anyhow && round == 0)) break;
+    Attempt attempt = Remesh(input, domain, levels);
+    const double started = Now();
+    const ReversedPart part = FindReversed(input.surface, attempt.fitted);
+    attempt.fit_seconds += Now() - started;
+    attempt.reversed = part.share;
+    if (best) {
+      attempt.pierce_seconds += best->pierce_seconds;
+      attempt.fit_seconds += best->fit_seconds;
+    }
+    if (best && best->reversed < attempt.reversed) {
+      best->pierce_seconds = attempt.pierce_seconds;
+      best->fit_seconds = attempt.fit_seconds;
+    } else {
+      best = std::move(attempt);
+    }
+    if (!HoldReversed(part, domain, &held)) break;
+  }
+  return best;
+}
+
+// Less reversed area where one has too much of it, else closer to the input.
+bool IsBetter(const Attempt& a, const Attempt& b) {
+  const bool a_is_sound = a.reversed <= kMostReversed, b_is_sound = b.reversed <= kMostReversed;
+  if (a_is_sound != b_is_sound) return a_is_sound;
+  return a_is_sound ? a.psnr > b.psnr : a.reversed < b.reversed;
 }
 
 uint64_t NumNotFinite(const std::vector<Vec3f>& positions) {
@@ -216,16 +255,16 @@ Status Report(const std::string& path, const Options& options) {
   if (!input.parts.refined.triangles.empty()) {
     const double limit = 2.0 * static_cast<double>(input.parts.refined.positions.size());
     std::optional<SurfaceDistanceMeter> meter;
-    for (int levels = options.levels ? options.levels : 4; levels > 0 && !(best && levels < 3); --levels) {
-      BaseDomain domain = ChooseDomain(input, levels, limit);
-      if (FinestVertices(domain, levels) > limit && !options.levels && levels > 1) continue;
-      Attempt attempt = Remesh(input, std::move(domain), levels);
+    for (int levels = options.levels ? options.levels : 4; levels > 0 && !(best && levels < 3 && best->reversed <= kMostReversed); --levels) {
+      std::optional<Attempt> made = RemeshWithin(input, levels, limit, options.levels || levels == 1);
+      if (!made) continue;
+      Attempt attempt = std::move(*made);
       if (!best) {
         Print("bytes_per_triangle", PeakBytes() / static_cast<double>(cleaned.mesh.triangles.size()), "%.0f");
         LACERTA_ASSIGN_OR_RETURN(meter, SurfaceDistanceMeter::Create(input.parts.refined));
       }
       attempt.psnr = Psnr(DistanceOf(*meter, attempt.fitted).Rms(), meter->diagonal());
-      if (!best || attempt.psnr > best->psnr) best = std::move(attempt);
+      if (!best || IsBetter(attempt, *best)) best = std::move(attempt);
       if (options.levels) break;
     }
     PrintRemesh(input, *best, *meter);
