@@ -79,7 +79,7 @@ ReversedPart FindReversed(const InputSurface& surface, const NormalMesh& remesh)
 
 bool HoldReversed(const ReversedPart& part, const BaseDomain& domain, std::vector<uint32_t>* held) {
   if (part.share <= kMostReversed) return false;
-  const size_t most_faces = std::max<size_t>(1, domain.triangles().size() / 32);
+  const size_t most_faces = std::max<size_t>(4, domain.triangles().size() / 32);
   std::vector<uint32_t> more = *held;
   size_t num_faces = 0;
   double left = part.share;

@@ -39,7 +39,8 @@ inline constexpr int kReversalRounds = 4;
 
 // Adds to `held` (for CollapseHistory::CutWithout) the collapses that made the worst base faces, so many that over all others no more than
 // a third of kMostReversed is left. Returns whether another remesh is due; not where little is reversed, where no collapse is left to
-// hold, or where more than one base face in 32 is bad: that base is too coarse as a whole, which a few more vertices do not mend.
+// hold, or where more than 4 base faces and more than one in 32 are bad: that base is too coarse as a whole, and a few more vertices
+// do not mend it.
 bool HoldReversed(const ReversedPart& part, const BaseDomain& domain, std::vector<uint32_t>* held);
 
 }  // namespace lacerta

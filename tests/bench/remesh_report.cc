@@ -1,9 +1,8 @@
 // Remeshes mesh files and prints what came of each as one line of JSON: remesh_report [--levels N] [--out FOLDER] FILE...
 //
 // Levels: 4 and 3, whichever comes closer to the input; 2 or 1 where no base is small enough for those, or too much of the remesh is
-// reversed. The base is as large as it may be for a remesh of at most twice the vertices of the refined components.
-// --levels: that number alone. --out: where to
-// write the finest levels, as NAME.ply. Peak memory is that of the process once the first remesh stands, before anything is
+// reversed. The base is as large as it may be for a remesh of at most twice the vertices of the refined components. --levels: that
+// number alone. --out: where to write the finest levels, as NAME.ply. Peak memory is that of the process once the first remesh stands, before anything is
 // measured, so only that of the first file means anything.
 #include <sys/resource.h>
 

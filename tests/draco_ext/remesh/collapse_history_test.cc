@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
+
+#include "draco_ext/remesh/remeshing.h"
 
 namespace lacerta {
 namespace {
@@ -135,6 +138,60 @@ TEST(ClampWeights, MakesWeightsOfAnyNumbers) {
   EXPECT_EQ(ClampWeights({-1e-9, 1, 1}), (Vec3d{0, 0.5, 0.5}));
   EXPECT_EQ(ClampWeights({-1, -1, -1}), (Vec3d{1, 0, 0}));
   EXPECT_EQ(ClampWeights({0, 0, 4}), (Vec3d{0, 0, 1}));
+}
+
+TEST(CollapseHistory, HoldsCollapsesBackWithWhatBuildsOnThem) {
+  std::mt19937 random(17);
+  size_t num_finer = 0, num_refused = 0;
+  for (const shapes::NamedShape& shape : lacerta::testing::ClosedShapes()) {
+    SCOPED_TRACE(shape.name);
+    const CollapseHistory history = lacerta::testing::Decimated(shape.mesh, {16, 12, 0.2});
+    if (history.num_collapses() == 0) continue;
+    const int64_t euler = 2 - 2 * shape.genus;
+    for (int i = 0; i < 20; ++i) {
+      const uint32_t time = i % 2 == 0 ? history.num_collapses() : 1 + static_cast<uint32_t>(random() % history.num_collapses());
+      std::vector<uint32_t> held;
+      for (int k = 0; k <= i / 4; ++k) held.push_back(time - 1 - static_cast<uint32_t>(random() % std::min(time, 40u)));
+      const HistoryCut cut = history.CutWithout(held, time);
+      std::vector<Triangle> triangles;
+      std::set<uint32_t> vertices;
+      for (const uint32_t f : history.FacesAt(cut)) {
+        triangles.push_back(history.face(f));
+        vertices.insert(triangles.back().begin(), triangles.back().end());
+      }
+      const StatusOr<Topology> topology = BuildTopology(static_cast<uint32_t>(shape.mesh.positions.size()), triangles);
+      ASSERT_TRUE(topology.ok()) << topology.status().message();
+      EXPECT_EQ(static_cast<int64_t>(vertices.size()) - topology.value().num_edges() + topology.value().num_faces(), euler);
+      const size_t num_plain = shape.mesh.positions.size() - time;
+      EXPECT_LT(vertices.size(), shape.mesh.positions.size() + 1);
+      if (cut.held.empty()) {
+        ++num_refused;
+        EXPECT_EQ(vertices.size(), num_plain);
+        continue;
+      }
+      ++num_finer;
+      EXPECT_GT(vertices.size(), num_plain);
+      for (const uint32_t c : held) EXPECT_FALSE(cut.Has(c));
+      for (int n = 0; n < 30; ++n) {
+        const DomainPoint p = RandomPointOn(random() % shape.mesh.triangles.size(), &random);
+        const DomainPoint on_base = history.Forward(p, cut), again = history.Forward(history.Backward(on_base), cut);
+        ExpectWeights(on_base);
+        const auto place = [&](const DomainPoint& q) { return lacerta::testing::PositionOf(shape.mesh.positions, history.face(q.face), q.barycentric); };
+        EXPECT_LT(Norm(place(again) - place(on_base)), 1e-5 * BoundingBoxDiagonal(shape.mesh));
+      }
+    }
+  }
+  EXPECT_GT(num_finer, 50u);
+  EXPECT_LT(num_refused, num_finer / 10);
+}
+
+TEST(CollapseHistory, HoldsNothingBackUnasked) {
+  const CollapseHistory history = AfterOneCollapse(0);
+  EXPECT_TRUE(history.CutWithout({}, 1).held.empty());
+  EXPECT_EQ(history.FacesAt(history.CutWithout({0}, 1)), history.FacesAt(0));
+  EXPECT_EQ(history.FacesAt(history.CutWithout({0}, 0)), history.FacesAt(0)) << "not yet made";
+  EXPECT_EQ(history.created_by(0), kNone);
+  EXPECT_EQ(history.created_by(12), 0u);
 }
 
 }  // namespace

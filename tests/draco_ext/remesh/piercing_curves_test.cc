@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "draco_ext/remesh/remeshing.h"
 #include "lacerta/decoder.h"
@@ -189,6 +188,59 @@ TEST(PierceCurves, BothSidesOfACutPassThroughTheSamePoints) {
       return w != v && Norm(r.positions()[w] - r.positions()[v]) < 1e-6f;
     })) << v;
   }
+}
+
+// How far midpoints of the curves stray from the middle of their edge, in lengths of it, as decoders number them: the farthest.
+double FarthestFromMiddle(const NormalMesh& mesh) {
+  Topology t = BuildTopology(mesh.mesh.num_base_vertices, mesh.mesh.base_triangles, mesh.mesh.tags).value();
+  double farthest = 0;
+  for (int level = 0; level < mesh.mesh.num_levels; ++level) {
+    for (uint32_t e = 0; e < t.num_edges(); ++e) {
+      if (!t.on_curve[e]) continue;
+      const Vec3f &a = mesh.mesh.positions[t.edges[e][0]], &b = mesh.mesh.positions[t.edges[e][1]];
+      const double off = Norm(mesh.mesh.positions[t.num_vertices + e] - (a + b) * 0.5f) / Norm(b - a);
+      farthest = std::max(farthest, off);
+    }
+    t = Refine(t);
+  }
+  return farthest;
+}
+
+// Copies of an edge run as their master does, so their halves are numbered otherwise than without it: piercing has to know. Two sheets
+// side by side, whose borders run against each other.
+TEST(PierceCurves, BothSidesOfACutNumberTheirHalvesAlike) {
+  const TriangleMesh sheet = shapes::GridWithBorder(12, 12);
+  const auto [low, high] = std::minmax_element(sheet.positions.begin(), sheet.positions.end(), [](const Vec3f& a, const Vec3f& b) { return a.x < b.x; });
+  const float low_x = low->x, high_x = high->x;
+  const TriangleMesh input = lacerta::testing::Together(sheet, lacerta::testing::Moved(sheet, {high_x - low_x, 0, 0}));
+  const auto is_on_cut = [&](const Vec3f& p) { return std::fabs(p.x - high_x) < 1e-4f; };
+  Topology topology = lacerta::testing::TopologyOf(input);
+  for (uint32_t v = 0; v < topology.num_vertices; ++v) {
+    if (is_on_cut(input.positions[v])) topology.role[v] = CurveRole::kCorner;
+  }
+  const CollapseHistory history = Decimate(input, topology, {40, 12, 0.2});
+  const InputSurface surface(input, topology);
+  BaseDomain domain(history, history.num_collapses());
+  const std::vector<Vec3f> base = domain.PositionsOn(input);
+  std::vector<uint32_t> joined(domain.num_vertices());
+  size_t num_joined = 0;
+  for (uint32_t v = 0; v < joined.size(); ++v) {
+    joined[v] = v;
+    for (uint32_t w = 0; w < v && joined[v] == v; ++w) {
+      if (is_on_cut(base[v]) && Norm(base[v] - base[w]) < 1e-4f) joined[v] = w;
+    }
+    num_joined += joined[v] != v;
+  }
+  ASSERT_GE(num_joined, 12u);
+  PiercingOptions options;
+  options.num_levels = 3;
+  NormalMesh too_late = Pierce(surface, domain, base, options);
+  too_late.mesh.tags.joined = joined;
+  EXPECT_GT(FarthestFromMiddle(too_late), 0.9) << "no copy runs against its master";
+  domain.Join(joined);
+  const NormalMesh mesh = Pierce(surface, domain, base, options);
+  EXPECT_EQ(mesh.mesh.tags.joined, joined);
+  EXPECT_LT(FarthestFromMiddle(mesh), 0.4);
 }
 
 }  // namespace
