@@ -23,6 +23,7 @@ namespace {
 
 // Of a base that is made finer where the remesh is reversed: a surface that needs more is better served by the next size.
 constexpr double kLargestGrowth = 1.25;
+constexpr double kFreeVertices = 8;  // that any base may have more
 
 TriangleMesh Together(TriangleMesh a, const TriangleMesh& b) {
   const auto offset = static_cast<uint32_t>(a.positions.size());
@@ -94,7 +95,7 @@ StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface
   std::vector<uint32_t> held;
   bool is_due = false;
   LACERTA_ASSIGN_OR_RETURN(Remeshed best, RemeshAt(input, time, num_levels, &held, &is_due));
-  const double largest_base = kLargestGrowth * best.mesh.mesh.num_base_vertices;
+  const double first_base = best.mesh.mesh.num_base_vertices, largest_base = std::max(kLargestGrowth * first_base, first_base + kFreeVertices);
   for (int round = 1; is_due && round < kReversalRounds; ++round) {
     LACERTA_ASSIGN_OR_RETURN(Remeshed other, RemeshAt(input, time, num_levels, &held, &is_due));
     if (other.mesh.mesh.num_base_vertices > largest_base) break;

@@ -34,7 +34,8 @@ struct CodedStream {
 class NormalMeshCandidate {
  public:
   // The base mesh is the one that the history has at `num_base_vertices` vertices, or its coarsest if that is larger, with the
-  // still part beside it. num_levels: above the base. Fails where Draco cannot carry the base.
+  // still part beside it; up to a quarter or 8 vertices finer where the remesh would be reversed (remesh/reversal.h). num_levels: above
+  // the base. Fails where Draco cannot carry the base.
   static StatusOr<NormalMeshCandidate> Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels);
 
   // normal_mesh: over base.mesh, in its order.
