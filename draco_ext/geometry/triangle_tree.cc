@@ -53,6 +53,27 @@ struct TrianglePoint {
   double squared_distance = 0.0;
 };
 
+// Faces that two levels of subdivision make of one.
+constexpr uint32_t kGroupSize = 16;
+
+// Whether four faces are the children that `Refine` (common/subdivision.h) makes of one face, the middle one last.
+bool IsRefinedFace(const Triangle& a, const Triangle& b, const Triangle& c, const Triangle& middle) {
+  return a[1] == middle[2] && a[2] == middle[1] && b[1] == middle[0] && b[2] == middle[2] && c[1] == middle[1] && c[2] == middle[0];
+}
+
+// Whether the mesh is the second level, or a finer one, of a mesh refined by splitting faces in four, children in a row.
+bool IsInOrderOfSubdivision(const std::vector<Triangle>& t) {
+  if (t.empty() || t.size() % kGroupSize != 0) return false;
+  for (size_t f = 0; f < t.size(); f += 4) {
+    if (!IsRefinedFace(t[f], t[f + 1], t[f + 2], t[f + 3])) return false;
+  }
+  const auto parent = [&](size_t f) { return Triangle{t[f][0], t[f + 1][0], t[f + 2][0]}; };
+  for (size_t f = 0; f < t.size(); f += kGroupSize) {
+    if (!IsRefinedFace(parent(f), parent(f + 4), parent(f + 8), parent(f + 12))) return false;
+  }
+  return true;
+}
+
 // Closest to p on the segment from `start` to start + d, all relative to p: parameter in [0, 1] and squared distance.
 std::pair<double, double> ClosestOnSegment(const Vec3d& start, const Vec3d& d) {
   const double length2 = SquaredNorm(d);
@@ -106,8 +127,14 @@ struct StackEntry {
 
 struct TriangleTree::Reference {
   Box box;
-  uint32_t face;
+  uint32_t face;  // the first one
   Vec3f Center() const { return (box.min + box.max) * 0.5f; }
+};
+
+struct TriangleTree::Building {
+  const TriangleMesh& mesh;
+  const Reference* all;
+  bool in_groups;  // of kGroupSize faces
 };
 
 struct TriangleTree::Search {
@@ -127,35 +154,50 @@ struct TriangleTree::Search {
 };
 
 TriangleTree::TriangleTree(const TriangleMesh& mesh) {
-  std::vector<Reference> references;
-  references.reserve(mesh.triangles.size());
   slots_.assign(mesh.triangles.size(), SurfacePoint::kNone);
+  std::vector<Reference> references;
   float largest = 0.0f;
-  for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
-    Reference reference;
-    reference.face = f;
-    bool usable = true;
-    for (const uint32_t v : mesh.triangles[f]) {
-      usable = usable && v < mesh.positions.size() && IsUsable(mesh.positions[v]);
-      if (usable) reference.box.Add(mesh.positions[v]);
+  const auto refer_to_groups_of = [&](uint32_t size) {  // whether none had to be left out
+    references.reserve(mesh.triangles.size() / size);
+    bool complete = true;
+    for (uint32_t first = 0; first < mesh.triangles.size(); first += size) {
+      Reference reference;
+      reference.face = first;
+      bool usable = true;
+      for (uint32_t f = first; f < first + size; ++f) {
+        for (const uint32_t v : mesh.triangles[f]) {
+          usable = usable && v < mesh.positions.size() && IsUsable(mesh.positions[v]);
+          if (usable) reference.box.Add(mesh.positions[v]);
+        }
+      }
+      complete = complete && usable;
+      if (!usable) continue;
+      for (int k = 0; k < 3; ++k) {
+        largest = std::max({largest, std::fabs(reference.box.min[k]), std::fabs(reference.box.max[k])});
+      }
+      references.push_back(reference);
     }
-    if (!usable) continue;
-    for (int k = 0; k < 3; ++k) {
-      largest = std::max({largest, std::fabs(reference.box.min[k]), std::fabs(reference.box.max[k])});
-    }
-    references.push_back(reference);
+    return complete;
+  };
+  bool in_groups = IsInOrderOfSubdivision(mesh.triangles) && refer_to_groups_of(kGroupSize);
+  if (!in_groups) {
+    references.clear();
+    refer_to_groups_of(1);
   }
   if (references.empty()) return;
   padding_ = std::max(largest * 0x1p-22f, FLT_MIN);
-  nodes_.reserve(references.size() / 2 + 1);
-  BuildNode(references.data(), references.data() + references.size(), references.data(), 0, &nodes_);
-  corners_.reserve(references.size());
-  faces_.reserve(references.size());
+  const uint32_t group_size = in_groups ? kGroupSize : 1;
+  nodes_.reserve(in_groups ? 2 * references.size() : references.size() / 2 + 1);
+  BuildNode({mesh, references.data(), in_groups}, references.data(), references.data() + references.size(), 0, &nodes_);
+  corners_.reserve(references.size() * group_size);
+  faces_.reserve(references.size() * group_size);
   for (const Reference& reference : references) {
-    const Triangle& t = mesh.triangles[reference.face];
-    slots_[reference.face] = static_cast<uint32_t>(faces_.size());
-    faces_.push_back(reference.face);
-    corners_.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+    for (uint32_t f = reference.face; f < reference.face + group_size; ++f) {
+      const Triangle& t = mesh.triangles[f];
+      slots_[f] = static_cast<uint32_t>(faces_.size());
+      faces_.push_back(f);
+      corners_.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+    }
   }
 }
 
@@ -213,16 +255,29 @@ Reference* Split(Reference* first, Reference* last, bool halve) {
   return middle;
 }
 
+// The box of child k of a node; a missing child has an empty one.
+template <typename Node>
+void SetBox(const Box& box, float padding, int k, Node* node) {
+  const bool is_missing = box.min.x > box.max.x;
+  const Vec3f center = is_missing ? Vec3f() : (box.min + box.max) * 0.5f;
+  const Vec3f half_size = is_missing ? Vec3f{-FLT_MAX, -FLT_MAX, -FLT_MAX} : (box.max - box.min) * 0.5f + Vec3f{padding, padding, padding};
+  for (int axis = 0; axis < 3; ++axis) {
+    node->center[axis][k] = center[axis];
+    node->half_size[axis][k] = half_size[axis];
+  }
+}
+
 }  // namespace
 
-uint32_t TriangleTree::BuildNode(Reference* first, Reference* last, const Reference* all, int depth,
+uint32_t TriangleTree::BuildNode(const Building& building, Reference* first, Reference* last, int depth,
                                  std::vector<Node>* nodes) const {
+  const std::ptrdiff_t leaf_size = building.in_groups ? 1 : kLeafSize;
   const bool halve = depth >= kMaxHeuristicDepth;
   // The ends of up to four parts: two, then each of them again in two.
   Reference* ends[kWidth + 1] = {first, last};
   int num_parts = 1;
   const auto split_part = [&](int part) {
-    if (ends[part + 1] - ends[part] <= kLeafSize) return;
+    if (ends[part + 1] - ends[part] <= leaf_size) return;
     Reference* middle = Split(ends[part], ends[part + 1], halve);
     for (int k = num_parts; k > part; --k) ends[k + 1] = ends[k];
     ends[part + 1] = middle;
@@ -236,21 +291,27 @@ uint32_t TriangleTree::BuildNode(Reference* first, Reference* last, const Refere
 
   const auto index = static_cast<uint32_t>(nodes->size());
   nodes->emplace_back();
-  const auto is_leaf = [&](int k) { return ends[k + 1] - ends[k] <= kLeafSize; };
+  const auto is_leaf = [&](int k) { return ends[k + 1] - ends[k] <= leaf_size; };
   uint32_t children[kWidth] = {};
+  const auto build_part = [&](int k, std::vector<Node>* to) {
+    if (!is_leaf(k)) return BuildNode(building, ends[k], ends[k + 1], depth + 1, to);
+    to->push_back(GroupNode(building.mesh, ends[k]->face, static_cast<uint32_t>(ends[k] - building.all) * kGroupSize));
+    return static_cast<uint32_t>(to->size() - 1);
+  };
+  const auto has_node = [&](int k) { return building.in_groups || !is_leaf(k); };
   if (last - first < kParallelSize) {
     for (int k = 0; k < num_parts; ++k) {
-      if (!is_leaf(k)) children[k] = BuildNode(ends[k], ends[k + 1], all, depth + 1, nodes);
+      if (has_node(k)) children[k] = build_part(k, nodes);
     }
   } else {
     // Every thread fills its own list; joined in order, they are the same list that one thread would have made.
     std::vector<Node> lists[kWidth];
     tbb::parallel_for(0, num_parts, [&](int k) {
-      if (!is_leaf(k)) BuildNode(ends[k], ends[k + 1], all, depth + 1, &lists[k]);
+      if (has_node(k)) build_part(k, &lists[k]);
     });
     for (int k = 0; k < num_parts; ++k) {
       const auto offset = static_cast<uint32_t>(nodes->size());
-      if (!is_leaf(k)) children[k] = offset;
+      if (has_node(k)) children[k] = offset;
       for (Node& node : lists[k]) {
         for (int j = 0; j < kWidth; ++j) node.child[j] += node.count[j] == 0 ? offset : 0;
         nodes->push_back(node);
@@ -260,25 +321,33 @@ uint32_t TriangleTree::BuildNode(Reference* first, Reference* last, const Refere
 
   Node& node = (*nodes)[index];
   for (int k = 0; k < kWidth; ++k) {
-    Vec3f center, half_size{-FLT_MAX, -FLT_MAX, -FLT_MAX};
+    Box box;
+    for (const Reference* r = ends[std::min(k, num_parts)]; r != ends[std::min(k + 1, num_parts)]; ++r) box.Add(r->box);
+    SetBox(box, padding_, k, &node);
     node.child[k] = children[k];
     node.count[k] = 0;
-    if (k < num_parts) {
-      Box box;
-      for (const Reference* r = ends[k]; r != ends[k + 1]; ++r) box.Add(r->box);
-      center = (box.min + box.max) * 0.5f;
-      half_size = (box.max - box.min) * 0.5f + Vec3f{padding_, padding_, padding_};
-      if (is_leaf(k)) {
-        node.child[k] = static_cast<uint32_t>(ends[k] - all);
-        node.count[k] = static_cast<uint32_t>(ends[k + 1] - ends[k]);
-      }
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      node.center[axis][k] = center[axis];
-      node.half_size[axis][k] = half_size[axis];
+    if (k < num_parts && !has_node(k)) {
+      node.child[k] = static_cast<uint32_t>(ends[k] - building.all);
+      node.count[k] = static_cast<uint32_t>(ends[k + 1] - ends[k]);
     }
   }
   return index;
+}
+
+// Of four leaves, which hold four faces in a row each.
+TriangleTree::Node TriangleTree::GroupNode(const TriangleMesh& mesh, uint32_t first_face, uint32_t first_slot) const {
+  constexpr uint32_t kPartSize = kGroupSize / kWidth;
+  Node node;
+  for (uint32_t k = 0; k < kWidth; ++k) {
+    Box box;
+    for (uint32_t i = k * kPartSize; i < (k + 1) * kPartSize; ++i) {
+      for (const uint32_t v : mesh.triangles[first_face + i]) box.Add(mesh.positions[v]);
+    }
+    SetBox(box, padding_, static_cast<int>(k), &node);
+    node.child[k] = first_slot + k * kPartSize;
+    node.count[k] = kPartSize;
+  }
+  return node;
 }
 
 void TriangleTree::TestSlot(uint32_t slot, Search* search) const {

@@ -30,7 +30,8 @@ struct LineHit {
 };
 
 // A hierarchy of axis-aligned boxes, four to a node, split by the binned surface area heuristic [Wald 2007]. Queries
-// are const, need no memory of their own and may run in many threads at once.
+// are const, need no memory of their own and may run in many threads at once. Where the faces are in the order of
+// subdivision, the smallest boxes are those of two levels of it, and the tree is built in a tenth of the time.
 //
 // The tree copies the triangles, so the mesh may go away. Faces that no query can meet are left out: an index out of
 // range, or a coordinate that is not finite or beyond kMaxCoordinate. Degenerate faces stay: they are the segment or
@@ -76,11 +77,12 @@ class TriangleTree {
     uint32_t child[kWidth];      // a node, or the first slot of a leaf
     uint32_t count[kWidth];      // 0: a node, else the number of triangles in the leaf
   };
-  struct Reference;  // a face while the tree is built
+  struct Reference;  // a face, or some that stay together, while the tree is built
+  struct Building;
   struct Search;     // what a closest point query has found so far
 
-  uint32_t BuildNode(Reference* first, Reference* last, const Reference* all, int depth,
-                     std::vector<Node>* nodes) const;
+  uint32_t BuildNode(const Building& building, Reference* first, Reference* last, int depth, std::vector<Node>* nodes) const;
+  Node GroupNode(const TriangleMesh& mesh, uint32_t first_face, uint32_t first_slot) const;
   void TestSlot(uint32_t slot, Search* search) const;
   ClosestPointResult Finish(const Search& search) const;
   void Traverse(Search* search) const;

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "common/subdivision.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
@@ -96,6 +97,42 @@ TEST(TriangleTree, ClosestPointAgreesWithBruteForceOnAllShapes) {
       hint = static_cast<uint32_t>(random());  // of a face sometimes, mostly of none
       if (k % 3 != 0) hint %= static_cast<uint32_t>(shape.mesh.triangles.size());
     }
+  }
+}
+
+TEST(TriangleTree, FacesInOrderOfSubdivisionStayTogether) {
+  TriangleMesh ordered = shapes::BumpySphere(2);
+  Topology topology = BuildTopology(static_cast<uint32_t>(ordered.positions.size()), ordered.triangles).value();
+  for (int level = 0; level < 2; ++level) {
+    for (const auto& [a, b] : topology.edges) ordered.positions.push_back((ordered.positions[a] + ordered.positions[b]) * 0.5f);
+    topology = Refine(topology);
+  }
+  ordered.triangles = topology.triangles;
+  TriangleMesh shuffled = ordered;
+  std::shuffle(shuffled.triangles.begin(), shuffled.triangles.end(), std::mt19937(5));
+  const TriangleTree tree(ordered), other(shuffled);
+  const auto kept_together = [](const TriangleTree& t) {
+    size_t count = 0;
+    for (size_t slot = 0; slot < t.faces_in_tree_order().size(); slot += 16) {
+      bool together = true;
+      for (size_t k = 0; k < 16; ++k) {
+        together = together && t.faces_in_tree_order()[slot + k] == t.faces_in_tree_order()[slot] + k;
+      }
+      count += together && t.faces_in_tree_order()[slot] % 16 == 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(kept_together(tree), ordered.triangles.size() / 16);
+  EXPECT_EQ(kept_together(other), 0u);
+  std::mt19937 random(11);
+  std::vector<LineHit> hits, other_hits;
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3f p = RandomPoint(&random, 1.5f), direction = RandomPoint(&random, 1.0f);
+    EXPECT_EQ(tree.ClosestPoint(p).squared_distance, other.ClosestPoint(p).squared_distance);
+    hits.clear(), other_hits.clear();
+    tree.IntersectLine(p, direction, -9, 9, &hits);
+    other.IntersectLine(p, direction, -9, 9, &other_hits);
+    EXPECT_EQ(hits.size(), other_hits.size());
   }
 }
 
