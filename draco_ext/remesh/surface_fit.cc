@@ -16,71 +16,106 @@
 namespace lacerta {
 namespace {
 
-// A point of the input and what it says of the vertices of the nearest triangle: `gap` is to be undone by moves d_k of its corners
-// along their normals, sum slopes[k] * d_k = gap.
+// What a point of the input says of the vertices of the nearest triangle of the remesh: `gap` is to be undone by moves d_k of its
+// corners along their normals, sum slopes[k] * d_k = gap.
 struct Sample {
-  Triangle corners;
-  std::array<double, 3> slopes{};
-  double gap = 0;
+  uint32_t face = 0;
+  std::array<float, 3> slopes{};
+  float gap = 0;
 };
 
-// About `count` points, spread evenly over the area: one face after the other gets its share, in a low-discrepancy sequence.
-std::vector<SurfacePoint> SpreadPoints(const TriangleMesh& mesh, double count) {
-  std::vector<double> areas;
-  double total = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
-    areas.push_back(Norm(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a)));
-    total += areas.back();
-  }
-  std::vector<SurfacePoint> points;
-  double due = 0;
-  for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
-    for (due += count * areas[f] / total; due >= 1; due -= 1) {
-      const Vec3f weights = Vec3Cast<float>(TrianglePoint(points.size(), 0));
-      SurfacePoint p;
-      p.face = f;
-      p.barycentric = {weights.x, weights.y, weights.z};
-      points.push_back(p);
+// Walks through points spread evenly over the area of a mesh: one face after the other gets its share, in a low-discrepancy sequence.
+class PointWalk {
+ public:
+  PointWalk(const TriangleMesh& mesh, double points_per_area) : mesh_(&mesh), points_per_area_(points_per_area) {}
+
+  // Whether there is one more; it is on face() then, at weights().
+  bool Next() {
+    for (; !(due_ >= 1); due_ += points_per_area_ * DoubledArea(*mesh_, face_++)) {
+      if (face_ == mesh_->triangles.size()) return false;
     }
+    due_ -= 1;
+    ++num_points_;
+    return true;
   }
-  return points;
-}
+
+  uint32_t face() const { return face_ - 1; }
+  Vec3d weights() const { return TrianglePoint(num_points_ - 1, 0); }
+
+  static double DoubledArea(const TriangleMesh& mesh, uint32_t face) {
+    const Triangle& t = mesh.triangles[face];
+    const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
+    return Norm(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a));
+  }
+
+ private:
+  const TriangleMesh* mesh_;
+  double points_per_area_;
+  double due_ = 0;
+  uint32_t face_ = 0;
+  uint64_t num_points_ = 0;
+};
 
 // hint: the face of the remesh nearest to the point before, for the next one as well.
-Sample SampleAt(const InputSurface& surface, const SurfacePoint& point, const TriangleMesh& remesh, const TriangleTree& tree,
+Sample SampleAt(const InputSurface& surface, uint32_t face, const Vec3d& weights, const TriangleMesh& remesh, const TriangleTree& tree,
                 const std::vector<Vec3f>& normals, uint32_t* hint) {
   constexpr double kLeastCosine = 0.5;  // between the two surfaces: else the nearest triangle is on another sheet
-  const Vec3d weights{point.barycentric[0], point.barycentric[1], point.barycentric[2]};
-  const Vec3f position = surface.PositionAt(point.face, weights);
+  const Vec3f position = surface.PositionAt(face, weights);
   const SurfacePoint nearest = tree.ClosestPointNear(position, *hint).point;
   *hint = nearest.face;
   if (nearest.face == kNone) return {};
-  Sample sample;
-  sample.corners = remesh.triangles[nearest.face];
+  const Triangle& corners = remesh.triangles[nearest.face];
   Vec3d p[3];
-  for (int k = 0; k < 3; ++k) p[k] = Vec3Cast<double>(remesh.positions[sample.corners[k]]);
+  for (int k = 0; k < 3; ++k) p[k] = Vec3Cast<double>(remesh.positions[corners[k]]);
   const Vec3d normal = Normalized(Cross(p[1] - p[0], p[2] - p[0]));
-  if (Dot(normal, Vec3Cast<double>(surface.NormalAt(point.face, weights))) < kLeastCosine) return {};
-  sample.gap = Dot(Vec3Cast<double>(position - nearest.position), normal);
+  if (Dot(normal, Vec3Cast<double>(surface.NormalAt(face, weights))) < kLeastCosine) return {};
+  Sample sample;
+  sample.face = nearest.face;
+  sample.gap = static_cast<float>(Dot(Vec3Cast<double>(position - nearest.position), normal));
   for (int k = 0; k < 3; ++k) {
-    sample.slopes[k] = double{nearest.barycentric[k]} * Dot(normal, Vec3Cast<double>(normals[sample.corners[k]]));
+    sample.slopes[k] = nearest.barycentric[k] * static_cast<float>(Dot(normal, Vec3Cast<double>(normals[corners[k]])));
   }
   return sample;
+}
+
+// Samples of about `count` points of the input.
+std::vector<Sample> TakeSamples(const InputSurface& surface, double count, const TriangleMesh& remesh, const std::vector<Vec3f>& normals) {
+  constexpr size_t kBlockSize = 512;  // fixed, so that hints do not depend on the threads
+  const TriangleMesh& input = surface.mesh();
+  double area = 0;
+  for (uint32_t f = 0; f < input.triangles.size(); ++f) area += PointWalk::DoubledArea(input, f);
+  PointWalk walk(input, area > 0 ? count / area : 0);
+  std::vector<PointWalk> block_starts;
+  size_t num_points = 0;
+  for (PointWalk before = walk; walk.Next(); before = walk, ++num_points) {
+    if (num_points % kBlockSize == 0) block_starts.push_back(before);
+  }
+  const TriangleTree tree(remesh);
+  std::vector<Sample> samples(num_points);
+  tbb::parallel_for(size_t{0}, block_starts.size(), [&](size_t block) {
+    PointWalk point = block_starts[block];
+    uint32_t hint = kNone;
+    for (size_t i = block * kBlockSize; i < std::min(num_points, (block + 1) * kBlockSize) && point.Next(); ++i) {
+      samples[i] = SampleAt(surface, point.face(), point.weights(), remesh, tree, normals, &hint);
+    }
+  });
+  return samples;
 }
 
 // The normal equations of the samples, (sum s s' + stiffness) d = sum gap s.
 class NormalEquations {
  public:
-  NormalEquations(const std::vector<Sample>& samples, double stiffness) : samples_(samples), stiffness_(stiffness) {}
+  NormalEquations(const std::vector<Triangle>& triangles, const std::vector<Sample>& samples, double stiffness)
+      : triangles_(triangles), samples_(samples), stiffness_(stiffness) {}
 
   std::vector<double> Apply(const std::vector<double>& d) const {
     std::vector<double> result(d.size());
     for (size_t v = 0; v < d.size(); ++v) result[v] = stiffness_ * d[v];
     for (const Sample& s : samples_) {
+      const Triangle& corners = triangles_[s.face];
       double along = 0;
-      for (int k = 0; k < 3; ++k) along += s.slopes[k] * d[s.corners[k]];
-      for (int k = 0; k < 3; ++k) result[s.corners[k]] += s.slopes[k] * along;
+      for (int k = 0; k < 3; ++k) along += double{s.slopes[k]} * d[corners[k]];
+      for (int k = 0; k < 3; ++k) result[corners[k]] += double{s.slopes[k]} * along;
     }
     return result;
   }
@@ -88,12 +123,13 @@ class NormalEquations {
   std::vector<double> RightSide(size_t num_vertices) const {
     std::vector<double> result(num_vertices, 0.0);
     for (const Sample& s : samples_) {
-      for (int k = 0; k < 3; ++k) result[s.corners[k]] += s.slopes[k] * s.gap;
+      for (int k = 0; k < 3; ++k) result[triangles_[s.face][k]] += double{s.slopes[k]} * double{s.gap};
     }
     return result;
   }
 
  private:
+  const std::vector<Triangle>& triangles_;
   const std::vector<Sample>& samples_;
   const double stiffness_;
 };
@@ -168,25 +204,23 @@ void MoveUnlessTurned(const InputSurface& surface, const std::vector<double>& mo
   }
 }
 
+// Those of the finest level.
+std::vector<Triangle> FinestTriangles(const SemiRegularMesh& mesh) {
+  Topology topology = BuildTopology(mesh.num_base_vertices, mesh.base_triangles, mesh.tags).value();
+  for (int level = 0; level < mesh.num_levels; ++level) topology = Refine(topology);
+  return std::move(topology.triangles);
+}
+
 }  // namespace
 
 void FitToInput(const InputSurface& surface, const SurfaceFitOptions& options, NormalMesh* remesh) {
   SemiRegularMesh& mesh = remesh->mesh;
-  Topology topology = BuildTopology(mesh.num_base_vertices, mesh.base_triangles, mesh.tags).value();
-  for (int level = 0; level < mesh.num_levels; ++level) topology = Refine(topology);
-  TriangleMesh finest{mesh.positions, std::move(topology.triangles)};
-  const TriangleTree tree(finest);
-  const std::vector<SurfacePoint> points =
-      SpreadPoints(surface.mesh(), options.samples_per_vertex * static_cast<double>(finest.positions.size()));
-  std::vector<Sample> samples(points.size());
-  constexpr size_t kBlockSize = 512;  // fixed, so that hints do not depend on the threads
-  tbb::parallel_for(size_t{0}, (points.size() + kBlockSize - 1) / kBlockSize, [&](size_t block) {
-    uint32_t hint = kNone;
-    for (size_t i = block * kBlockSize; i < std::min(points.size(), (block + 1) * kBlockSize); ++i) {
-      samples[i] = SampleAt(surface, points[i], finest, tree, remesh->surface_normals, &hint);
-    }
-  });
-  std::vector<double> moves = Solve(NormalEquations(samples, options.stiffness), mesh.positions.size(), options.iterations);
+  TriangleMesh finest{mesh.positions, FinestTriangles(mesh)};
+  const double num_samples = std::min(options.samples_per_vertex * static_cast<double>(finest.positions.size()),
+                                      options.samples_per_input_vertex * static_cast<double>(surface.mesh().positions.size()));
+  const std::vector<Sample> samples = TakeSamples(surface, num_samples, finest, remesh->surface_normals);
+  std::vector<double> moves =
+      Solve(NormalEquations(finest.triangles, samples, options.stiffness), mesh.positions.size(), options.iterations);
   const std::vector<uint8_t> pinned = CopiedVertices(mesh.tags);
   for (size_t v = 0; v < pinned.size(); ++v) {
     if (pinned[v]) moves[v] = 0;

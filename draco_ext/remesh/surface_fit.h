@@ -9,7 +9,8 @@
 namespace lacerta {
 
 struct SurfaceFitOptions {
-  double samples_per_vertex = 3.0;  // points of the input that are looked at, per vertex of the remesh
+  double samples_per_vertex = 3.0;        // points of the input that are looked at, per vertex of the remesh...
+  double samples_per_input_vertex = 6.0;  // ...but no more than so many per vertex of the input: it has no more to tell
   double stiffness = 0.4;           // weight of staying in place, in samples
   int iterations = 12;              // of the conjugate gradients
 };
