@@ -144,10 +144,13 @@ bool LevelPiercer::FoldsAround(uint32_t edge, const std::vector<Site>& midpoints
   return false;
 }
 
-// Marks midpoints that must fall back: in each fine triangle that folds, the one that strays farthest in the parametrization.
-std::vector<uint8_t> LevelPiercer::FoldedMidpoints(const std::vector<Site>& midpoints) const {
+// Marks midpoints that must fall back: in each fine triangle that folds, the one that strays farthest in the parametrization. Only
+// faces with a side whose midpoint has moved are looked at.
+std::vector<uint8_t> LevelPiercer::FoldedMidpoints(const std::vector<Site>& midpoints, const std::vector<uint8_t>& moved) const {
   std::vector<uint8_t> folded_corners(coarse_.num_faces(), 0);  // bit k: the midpoint opposite to corner k
   tbb::parallel_for(uint32_t{0}, coarse_.num_faces(), [&](uint32_t f) {
+    const auto& sides = coarse_.face_edges[f];
+    if (!moved[sides[0]] && !moved[sides[1]] && !moved[sides[2]]) return;
     const FaceSites s = SitesOf(f, midpoints);
     for (const auto& child : kChildren) {
       if (!Folds(s, child)) continue;
@@ -175,8 +178,9 @@ std::vector<Site> LevelPiercer::Run(const StencilTable& stencils, const std::vec
   tbb::parallel_for(uint32_t{0}, coarse_.num_edges(),
                     [&](uint32_t e) { midpoints[e] = FindSite(e, PiercingKind::kNormal); });
   // Each round moves at least one midpoint one kind further, so this ends; a few rounds settle it in practice.
+  std::vector<uint8_t> folded(coarse_.num_edges(), 1);
   for (;;) {
-    const std::vector<uint8_t> folded = FoldedMidpoints(midpoints);
+    folded = FoldedMidpoints(midpoints, folded);
     if (std::find(folded.begin(), folded.end(), 1) == folded.end()) break;
     tbb::parallel_for(uint32_t{0}, coarse_.num_edges(), [&](uint32_t e) {
       if (!folded[e]) return;

@@ -86,7 +86,7 @@ class LevelPiercer {
   bool FoldsInChart(const FaceSites& sites, const int (&child)[3]) const;
   bool Folds(const FaceSites& sites, const int (&child)[3]) const;
   bool FoldsAround(uint32_t edge, const std::vector<Site>& midpoints) const;
-  std::vector<uint8_t> FoldedMidpoints(const std::vector<Site>& midpoints) const;
+  std::vector<uint8_t> FoldedMidpoints(const std::vector<Site>& midpoints, const std::vector<uint8_t>& moved) const;
   Vec3f NeighborMean(uint32_t edge, const std::vector<Site>& midpoints) const;
   void Relax(std::vector<Site>* midpoints) const;
   double TurnedOverAround(uint32_t edge, const std::vector<Site>& midpoints) const;
