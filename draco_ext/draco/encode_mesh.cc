@@ -1,3 +1,5 @@
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -16,6 +18,7 @@
 #include "lacerta/surface_distance.h"
 #include "remesh/decimate.h"
 #include "remesh/input_surface.h"
+#include "remesh/simplify.h"
 #include "remesh/surface_parts.h"
 #include "remesh/unsubdivide.h"
 
@@ -121,18 +124,25 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
   const SurfaceParts parts = SplitSurface(mesh);
   if (parts.refined.triangles.empty()) return Unsupported("no component has triangles enough to be worth remeshing");
   progress(0.02, "simplifying");
-  const CollapseHistory history = Decimate(parts.refined, parts.topology, DecimateOptions());
+  // Neither runs in parallel by itself.
+  std::optional<CollapseHistory> history;
+  std::optional<SimplificationSequence> sequence;
+  tbb::parallel_invoke([&] { history.emplace(Decimate(parts.refined, parts.topology, DecimateOptions())); },
+                       [&] {
+                         if (options.levels == LevelChoice::kWhereTheyPay) sequence.emplace(mesh);
+                       });
   const InputSurface surface(parts.refined, parts.topology);
   const double psnr = TypicalPsnr(target, static_cast<double>(mesh.positions.size()));
   const StillPart still = PrepareStillPart(parts.still, parts.refined, DistanceOfPsnr(psnr, meter.diagonal()));
-  const RefinableSurface refinable{surface, history, still.mesh};
+  const RefinableSurface refinable{surface, *history, still.mesh};
   LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen, CodeAtTarget(refinable, meter, target, options.mode, options.progress));
   report.parts = {parts.refined_components,       parts.still_components, still.hidden_components,
                   parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices};
   progress(0.95, "comparing with Draco");
   std::optional<ZeroLevelStream> simpler;
-  if (options.levels == LevelChoice::kWhereTheyPay) {
-    LACERTA_ASSIGN_OR_RETURN(simpler, SimplerIfBetter(mesh, meter, target, chosen.measured));
+  history.reset();  // the largest of what is no longer needed
+  if (sequence) {
+    LACERTA_ASSIGN_OR_RETURN(simpler, SimplerIfBetter(mesh, *sequence, meter, target, chosen.measured));
   }
   const std::string reason = simpler ? ReasonForSimpler(*simpler, target) : ReasonForMiss(chosen.measured, target);
   if (simpler) return FromZeroLevel(std::move(*simpler), report, reason);

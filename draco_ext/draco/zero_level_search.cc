@@ -16,12 +16,28 @@
 namespace lacerta {
 namespace {
 
+constexpr double kMostRegular = 4;  // times the triangles of the best simplified mesh: the input may take fewer bytes as it is
+constexpr uint64_t kSizeSamples = 4000;  // that tell how far a mesh may be simplified
+
 double Square(double x) { return x * x; }
+
+// Whether no simplified mesh at the PSNR takes fewer than `bytes`, as one look tells at a mesh that is larger than any that does. Never
+// certain at a rate, nor where the input may be so regular that it takes hardly any bytes.
+bool IsHopeless(const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, double bytes) {
+  constexpr double kFewestBytesPerTriangle = 0.85;
+  constexpr double kMostGain = 2;  // of the fit, in squared distance
+  const double triangles = std::max(bytes / kFewestBytesPerTriangle, static_cast<double>(sequence.fewest_triangles()));
+  if (target.is_rate || kMostRegular * triangles > static_cast<double>(sequence.num_input_triangles())) return false;
+  const TriangleMesh simplified = sequence.MeshWith(static_cast<uint32_t>(triangles));
+  const double distance = DecodedDistance(meter, simplified, SurfaceDistanceOptions::RmsOnly(kSizeSamples));
+  return Square(distance) > kMostGain * Square(DistanceOfPsnr(target.psnr, meter.diagonal()));
+}
 
 class ZeroLevelSearch {
  public:
-  ZeroLevelSearch(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target)
-      : mesh_(mesh), meter_(meter), target_(target), sequence_(mesh), fit_target_(mesh, kFewestSamples) {
+  ZeroLevelSearch(const TriangleMesh& mesh, const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter,
+                  const ResolvedTarget& target)
+      : mesh_(mesh), meter_(meter), target_(target), sequence_(sequence), fit_target_(mesh, kFewestSamples) {
     if (!target.is_rate) distortion_ = Square(DistanceOfPsnr(target.psnr, meter.diagonal()));
   }
 
@@ -44,7 +60,6 @@ class ZeroLevelSearch {
       if (best_ > kManyTriangles) break;
     }
     // A mesh of many regular triangles may take fewer bytes as it is.
-    constexpr double kMostRegular = 4;
     if (static_cast<double>(mesh_.triangles.size()) < kMostRegular * best_) LACERTA_RETURN_IF_ERROR(Look(Clamped(1e18)));
     return !(!target_.is_rate && tried_.at(best_).meets && static_cast<double>(tried_.at(best_).coding.bytes) > kHopelessAtBest * most_bytes);
   }
@@ -103,9 +118,8 @@ class ZeroLevelSearch {
   uint32_t FirstSize() const {
     constexpr double kUsualBytesPerTriangle = 1.1, kUsualGain = 1.5;
     if (target_.is_rate) return Clamped(target_.bytes / kUsualBytesPerTriangle);
-    constexpr uint64_t kSamples = 4000;
     constexpr double kTolerance = 0.1;
-    return Clamped(SimplifiedSize(sequence_, meter_, std::sqrt(kUsualGain * distortion_), kSamples, kTolerance));
+    return Clamped(SimplifiedSize(sequence_, meter_, std::sqrt(kUsualGain * distortion_), kSizeSamples, kTolerance));
   }
 
   StatusOr<Trial> Try(uint32_t triangles) {
@@ -230,7 +244,7 @@ class ZeroLevelSearch {
   const TriangleMesh& mesh_;
   const SurfaceDistanceMeter& meter_;
   const ResolvedTarget target_;
-  const SimplificationSequence sequence_;
+  const SimplificationSequence& sequence_;
   FitTarget fit_target_;
   double distortion_ = 0;  // of a PSNR target
   std::map<uint32_t, Trial> tried_;  // by number of triangles asked for
@@ -240,20 +254,22 @@ class ZeroLevelSearch {
 }  // namespace
 
 StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target) {
-  ZeroLevelSearch search(mesh, meter, target);
+  const SimplificationSequence sequence(mesh);
+  ZeroLevelSearch search(mesh, sequence, meter, target);
   LACERTA_RETURN_IF_ERROR(search.FindSize(std::numeric_limits<double>::infinity()).status());
   return search.Finish();
 }
 
-StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter,
-                                                         const ResolvedTarget& target, const MeasuredStream& coded) {
-  ZeroLevelSearch search(mesh, meter, target);
+StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const SimplificationSequence& sequence,
+                                                         const SurfaceDistanceMeter& meter, const ResolvedTarget& target, const MeasuredStream& coded) {
   const double most_bytes = coded.meets_target ? static_cast<double>(coded.stream.size()) : std::numeric_limits<double>::infinity();
   std::optional<ZeroLevelStream> result;
+  constexpr double kLevelsWorthBytes = 0.05, kLevelsWorthPsnr = 0.3;
+  if (IsHopeless(sequence, meter, target, (1 - kLevelsWorthBytes) * most_bytes)) return result;
+  ZeroLevelSearch search(mesh, sequence, meter, target);
   LACERTA_ASSIGN_OR_RETURN(const bool may_be_better, search.FindSize(most_bytes));
   if (!may_be_better) return result;
   LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, search.Finish());
-  constexpr double kLevelsWorthBytes = 0.05, kLevelsWorthPsnr = 0.3;
   const auto bytes_to_beat = static_cast<size_t>((1 - kLevelsWorthBytes) * static_cast<double>(coded.stream.size()));
   if (search.IsBetter(stream, coded.meets_target, bytes_to_beat, coded.psnr + kLevelsWorthPsnr)) result = std::move(stream);
   return result;

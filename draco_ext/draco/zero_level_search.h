@@ -7,6 +7,7 @@
 #include "draco/rate_control.h"
 #include "lacerta/mesh.h"
 #include "lacerta/surface_distance.h"
+#include "remesh/simplify.h"
 
 namespace lacerta {
 
@@ -23,9 +24,11 @@ struct ZeroLevelStream {
 StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target);
 
 // The same where it clearly beats `coded`, which has levels to show for its bytes: it meets the target in 5 % fewer of them, or with a
-// PSNR 0.3 dB higher in as many, or comes nearer to it. None where it does not, which is often seen early.
-StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter,
-                                                         const ResolvedTarget& target, const MeasuredStream& coded);
+// PSNR 0.3 dB higher in as many, or comes nearer to it. None where it does not, which is often seen early. sequence: of
+// `mesh`.
+StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const SimplificationSequence& sequence,
+                                                         const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
+                                                         const MeasuredStream& coded);
 
 }  // namespace lacerta
 

@@ -104,17 +104,17 @@ TEST_F(ZeroLevelSearchTest, SimplerOnlyWhereItBeatsWhatThereIs) {
   coded.meets_target = true;
   coded.psnr = 50.1;
   coded.stream.base = Bytes(6000);
-  const std::optional<ZeroLevelStream> simpler = SimplerIfBetter(mesh_, meter_, target, coded).value();
+  const std::optional<ZeroLevelStream> simpler = SimplerIfBetter(mesh_, SimplificationSequence(mesh_), meter_, target, coded).value();
   ASSERT_TRUE(simpler.has_value());
   EXPECT_TRUE(simpler->meets_target);
   EXPECT_LT(simpler->stream.size(), coded.stream.size());
   for (const double part : {0.5, 0.95}) {
     coded.stream.base = Bytes(static_cast<size_t>(part * static_cast<double>(simpler->stream.size())));
-    EXPECT_FALSE(SimplerIfBetter(mesh_, meter_, target, coded).value().has_value());
+    EXPECT_FALSE(SimplerIfBetter(mesh_, SimplificationSequence(mesh_), meter_, target, coded).value().has_value());
   }
   coded.stream.base = Bytes(coded.stream.base.size() / 2);
   coded.meets_target = false;
-  EXPECT_TRUE(SimplerIfBetter(mesh_, meter_, target, coded).value().has_value());
+  EXPECT_TRUE(SimplerIfBetter(mesh_, SimplificationSequence(mesh_), meter_, target, coded).value().has_value());
 }
 
 TEST_F(ZeroLevelSearchTest, BeatsTheBestKnownOnRealMeshes) {
