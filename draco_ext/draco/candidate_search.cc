@@ -33,7 +33,7 @@ constexpr int kMeetTries = 16, kEstimatedTries = 6;
 
 CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double remesh_psnr, const SurfaceDistanceMeter& meter,
                                  const ResolvedTarget& target, EncodeMode mode)
-    : candidate_(candidate), remesh_psnr_(remesh_psnr), meter_(meter), target_(target), mode_(mode) {
+    : candidate_(candidate), remesh_psnr_(remesh_psnr), assumed_psnr_(remesh_psnr), meter_(meter), target_(target), mode_(mode) {
   const double distance = DistanceOfPsnr(target_.is_rate ? kUsualPsnr : target_.psnr, meter_.diagonal());
   start_ = std::log(kFirstLambda * distance * distance);
 }
@@ -47,16 +47,20 @@ double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogByte
 StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda) {
   Attempt attempt;
   LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code(std::exp(kept_steps_.value_or(log_lambda)), std::exp(log_lambda), mode_));
-  const double remesh_distance = DistanceOfPsnr(remesh_psnr_, meter_.diagonal());
-  const double estimate = Psnr(std::sqrt(attempt.stream.plane_distortion + remesh_distance * remesh_distance), meter_.diagonal());
   if (!offset_) {
     constexpr uint64_t kRoughSamples = 50'000;
-    offset_ = MeasurePsnr(attempt, kRoughSamples) - estimate;
+    offset_ = MeasurePsnr(attempt, kRoughSamples) - EstimatePsnr(attempt.stream, remesh_psnr_);
   }
+  const double estimate = EstimatePsnr(attempt.stream, assumed_psnr_);
   attempt.psnr = estimate + *offset_;
   attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : estimate;
   values_[log_lambda] = attempt.value;
   return attempt;
+}
+
+double CandidateSearch::EstimatePsnr(const CodedStream& stream, double remesh_psnr) const {
+  const double remesh_distance = DistanceOfPsnr(remesh_psnr, meter_.diagonal());
+  return Psnr(std::sqrt(stream.plane_distortion + remesh_distance * remesh_distance), meter_.diagonal());
 }
 
 double CandidateSearch::MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const {
@@ -136,9 +140,11 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
   double high_enough = target_.is_rate ? high : kFirstPsnrSlack;  // estimates lead near enough, in a few tries
   const auto is_met = [&](const Attempt& a) { return excess(a) >= low && excess(a) <= high_enough; };
   std::optional<Attempt> best, unmeasured;
+  // Safely beyond the target, then just so, then on its wrong side.
+  const auto rank = [&](const Attempt& a) { return excess(a) >= low && excess(a) <= high ? 2 : keeps_promise(a) ? 1 : 0; };
   const auto consider = [&](Attempt attempt) {
     const bool nearer = best && std::fabs(excess(attempt)) < std::fabs(excess(*best));
-    if (!best || (keeps_promise(attempt) == keeps_promise(*best) ? nearer : keeps_promise(attempt))) best = std::move(attempt);
+    if (!best || (rank(attempt) == rank(*best) ? nearer : rank(attempt) > rank(*best))) best = std::move(attempt);
   };
   double last = start_;
   for (int i = 0; i < kMeetTries && !CannotReach() && !(best && is_met(*best)); ++i) {

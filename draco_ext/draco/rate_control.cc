@@ -42,12 +42,26 @@ struct Rung {
   std::unique_ptr<CandidateSearch> search;
   Status status;  // why there is no candidate, if so
   double remesh_psnr = 0;
+  int levels = 0;             // of the candidate
+  bool lacks_level = false;   // it has one level less than a candidate that is coded, which is enough to score it
   double score = std::numeric_limits<double>::infinity();  // of CandidateSearch::Score; infinite: cannot reach the target
   double start = 0;                                        // of CandidateSearch::start, where there is a score
 };
 
 // Candidates that are taken to the target at a time, and in all. More are not kept: each is as large as the input.
 constexpr size_t kAtATime = 2, kMost = 4;
+
+// Work on each of several candidates: in parallel, but for surfaces so large that their memory counts for more. What can run in
+// parallel within a candidate does so anyway.
+template <typename Work>
+void ForEachCandidate(double num_input_vertices, size_t count, const Work& work) {
+  constexpr double kLarge = 250'000;
+  if (num_input_vertices < kLarge) {
+    tbb::parallel_for(size_t{0}, count, work);
+  } else {
+    for (size_t i = 0; i < count; ++i) work(i);
+  }
+}
 
 class Ladder {
  public:
@@ -75,7 +89,7 @@ class Ladder {
           const int beyond = 2 * r - best;
           if (IsMissing(r)) {
             next.push_back(r);
-          } else if (IsMissing(beyond) && rungs_.count(r) > 0 && rungs_[r].score < rungs_[best].score + MuchWorse()) {
+          } else if (IsMissing(beyond) && rungs_.count(r) > 0 && !IsMuchWorse(rungs_[r], rungs_[best])) {
             next.push_back(beyond);
           }
         }
@@ -94,16 +108,26 @@ class Ladder {
     }
   }
 
-  // A rung of FindBest, made anew where it was let go of.
-  StatusOr<const Rung*> Get(int number) {
+  // Takes a rung of FindBest, with all its levels, to the target. Several may be in parallel; afterwards it is let go of.
+  StatusOr<ChosenStream> Meet(int number) {
     Rung& rung = rungs_.at(number);
-    if (!rung.candidate) LACERTA_RETURN_IF_ERROR(Make(number, &rung));
-    return &rung;
+    if (!rung.candidate) {
+      LACERTA_RETURN_IF_ERROR(Remesh(number, /*enough_to_score=*/false, &rung));
+      if (std::isfinite(rung.score)) rung.search->BeginAt(rung.start);
+    }
+    LACERTA_ASSIGN_OR_RETURN(MeasuredStream measured, rung.search->Meet());
+    ChosenStream chosen{std::move(measured), rung.remesh_psnr, NormalShare(rung.candidate->normal_mesh())};
+    LetGo(&rung);
+    return chosen;
   }
 
  private:
-  // In the unit of scores. Neighbouring rungs are rarely further from the smooth curve of all rungs.
-  double MuchWorse() const { return target_.is_rate ? 0.3 : 0.03; }
+  // Whether rung a scores so much worse than b that it hardly is a fluke: neighbouring rungs are rarely further from the smooth curve
+  // of all rungs, but for those that lack a level.
+  bool IsMuchWorse(const Rung& a, const Rung& b) const {
+    const double log_bytes = a.lacks_level || b.lacks_level ? 0.06 : 0.03;
+    return a.score >= b.score + (target_.is_rate ? 10 : 1) * log_bytes;
+  }
 
   static void LetGo(Rung* rung) {
     rung->search.reset();
@@ -124,40 +148,52 @@ class Ladder {
     return start;
   }
 
-  // Makes and scores the given rungs, in parallel; those off the ladder are left out. A base that fails costs only itself.
+  // Makes and scores the given rungs; those off the ladder are left out. A base that fails costs only itself.
   void Visit(const std::vector<int>& numbers) {
     std::vector<std::pair<int, Rung>> made;
     for (const int r : numbers) {
       if (r >= first_ && r <= last_) made.emplace_back(r, Rung());
     }
-    tbb::parallel_for(size_t{0}, made.size(), [&](size_t i) {
+    ForEachCandidate(num_input_, made.size(), [&](size_t i) {
       Rung& rung = made[i].second;
-      rung.status = Make(made[i].first, &rung);
+      rung.status = MakeAndScore(made[i].first, &rung);
     });
     for (auto& [r, rung] : made) rungs_[r] = std::move(rung);
   }
 
-  Status Make(int number, Rung* rung) const {
+  // Makes the candidate of a rung. enough_to_score: the last level, which costs most and codes least, may be missing.
+  Status Remesh(int number, bool enough_to_score, Rung* rung) const {
     const double goal = TypicalPsnr(target_, num_input_);
     constexpr double kComfort = 12;         // dB: a remesh nearer to the goal than that costs bytes...
     constexpr double kMostVertices = 6.0;  // ...and gets one level more, up to so many times the input's vertices
-    for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
+    constexpr double kGoodForScore = 2.5;   // dB beyond the goal
+    constexpr double kGainOfLevel = 2;      // dB: what the missing level gains, less the bytes that it takes
+    if (rung->levels == 0) rung->levels = LevelsFor(RungSize(number), num_input_);
+    for (rung->levels += rung->lacks_level;; ++rung->levels) {
       LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate,
-                               NormalMeshCandidate::Create(surface_, RungSize(number), levels));
+                               NormalMeshCandidate::Create(surface_, RungSize(number), rung->levels));
       rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(candidate));
       constexpr uint64_t kRoughSamples = 30'000;
       const TriangleMesh remesh = rung->candidate->RemeshedSurface();
       LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(remesh, SurfaceDistanceOptions::RmsOnly(kRoughSamples)));
       rung->remesh_psnr = Psnr(distance.Rms(), meter_.diagonal());
       const double next_vertices = 4 * static_cast<double>(remesh.positions.size());
-      if (rung->remesh_psnr > goal + kComfort || next_vertices > kMostVertices * num_input_) break;
+      rung->lacks_level = rung->remesh_psnr <= goal + kComfort && next_vertices <= kMostVertices * num_input_;
+      if (!rung->lacks_level || (enough_to_score && rung->remesh_psnr > goal + kGoodForScore)) break;
     }
     rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_);
+    if (rung->lacks_level) rung->search->AssumeRemesh(rung->remesh_psnr + kGainOfLevel);
+    return Status();
+  }
+
+  Status MakeAndScore(int number, Rung* rung) const {
+    LACERTA_RETURN_IF_ERROR(Remesh(number, /*enough_to_score=*/true, rung));
     constexpr double kHeadroom = 0.5;  // dB that quantization takes at least
     if (const std::optional<double> start = StartOf(number)) rung->search->BeginAt(*start);
     if (!target_.is_rate && rung->remesh_psnr < target_.psnr + kHeadroom) return Status();
     LACERTA_ASSIGN_OR_RETURN(rung->score, rung->search->Score());
     rung->start = rung->search->start();
+    if (rung->lacks_level) LetGo(rung);
     return Status();
   }
 
@@ -228,17 +264,12 @@ StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const Surfa
   std::optional<ChosenStream> best;
   for (size_t first = 0; first < std::min(kMost, rungs.size()); first += kAtATime) {
     const size_t count = std::min(kAtATime, rungs.size() - first);
-    std::vector<const Rung*> tried;
-    for (size_t i = 0; i < count; ++i) {
-      LACERTA_ASSIGN_OR_RETURN(const Rung* const rung, ladder.Get(rungs[first + i]));
-      tried.push_back(rung);
-    }
-    std::vector<StatusOr<MeasuredStream>> met(count, InternalError("not tried"));
-    tbb::parallel_for(size_t{0}, count, [&](size_t i) { met[i] = tried[i]->search->Meet(); });
-    for (size_t i = 0; i < count; ++i) {
-      LACERTA_ASSIGN_OR_RETURN(MeasuredStream measured, std::move(met[i]));
-      if (best && !IsBetter(measured, best->measured, target)) continue;
-      best = {std::move(measured), tried[i]->remesh_psnr, NormalShare(tried[i]->candidate->normal_mesh())};
+    std::vector<StatusOr<ChosenStream>> met(count, InternalError("not tried"));
+    ForEachCandidate(static_cast<double>(surface.surface.mesh().positions.size()), count,
+                     [&](size_t i) { met[i] = ladder.Meet(rungs[first + i]); });
+    for (StatusOr<ChosenStream>& tried : met) {
+      LACERTA_ASSIGN_OR_RETURN(ChosenStream chosen, std::move(tried));
+      if (!best || IsBetter(chosen.measured, best->measured, target)) best = std::move(chosen);
     }
     if (best->measured.meets_target) break;
   }
