@@ -25,7 +25,7 @@ def parse_arguments(description, meshes):
     parser.add_argument("--command", type=Path, default=PROJECT / "build/release/bin/lacerta", help="the lacerta command")
     parser.add_argument("--out", type=Path, default=PROJECT / "docs/results", help="folder of the tables")
     arguments = parser.parse_args()
-    missing = [str(p) for p in [arguments.command] + [arguments.data / f"{m}.ply" for m in arguments.meshes] if not p.exists()]
+    missing = [str(p) for p in [arguments.command] + [arguments.data / f"{m.partition(chr(58))[0]}.ply" for m in arguments.meshes] if not p.exists()]
     if missing:
         parser.error("not found: " + ", ".join(missing))
     return arguments
