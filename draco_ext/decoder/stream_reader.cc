@@ -6,63 +6,12 @@
 #include <utility>
 
 #include "common/crc32.h"
+#include "decoder/byte_cursor.h"
 
 namespace lacerta {
 namespace {
 
-// A cursor over bytes that may end too early; after that every read gives 0 and at_end() says so.
-class Cursor {
- public:
-  explicit Cursor(Span<const uint8_t> bytes) : bytes_(bytes) {}
-
-  uint8_t Byte() {
-    if (position_ < bytes_.size()) return bytes_[position_++];
-    at_end_ = true;
-    return 0;
-  }
-  uint16_t Word16() {
-    const uint16_t low = Byte();
-    return static_cast<uint16_t>(low | Byte() << 8);
-  }
-  uint32_t Word32() {
-    const uint32_t low = Word16();
-    return low | static_cast<uint32_t>(Word16()) << 16;
-  }
-  // Seven bits per byte, lowest first, the top bit set in all bytes but the last.
-  uint32_t Varint() {
-    uint32_t value = 0;
-    for (int shift = 0; shift < 35; shift += 7) {
-      const uint8_t byte = Byte();
-      const uint32_t bits = byte & 0x7f;
-      if (shift == 28 && byte > 0x0f) break;
-      value |= bits << shift;
-      if (byte < 0x80) return value;
-    }
-    malformed_ = true;
-    return 0;
-  }
-
-  // The next bytes; none where there are not so many.
-  Span<const uint8_t> Take(size_t size) {
-    if (bytes_.size() - position_ < size) {
-      at_end_ = true;
-      return {};
-    }
-    position_ += size;
-    return bytes_.Subspan(position_ - size).First(size);
-  }
-
-  bool at_end() const { return at_end_; }        // a read went past the end
-  bool malformed() const { return malformed_; }  // a varint exceeds 32 bits
-  size_t position() const { return position_; }
-
- private:
-  Span<const uint8_t> bytes_;
-  size_t position_ = 0;
-  bool at_end_ = false, malformed_ = false;
-};
-
-LevelSteps ReadSteps(Cursor& cursor) {
+LevelSteps ReadSteps(ByteCursor& cursor) {
   LevelSteps steps;
   const uint16_t normal = cursor.Word16(), tangential = cursor.Word16();
   steps.normal_step = StepFromBits(normal);
@@ -81,7 +30,7 @@ bool IsStepOfStream(float step) { return step == 0.0f ? !std::signbit(step) : st
 
 StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> bytes) {
   using Result = std::optional<ReadHeader>;
-  Cursor cursor(bytes);
+  ByteCursor cursor(bytes);
   for (const uint8_t expected : kRefinementMagic) {
     const uint8_t byte = cursor.Byte();
     if (cursor.at_end()) return Result();
@@ -134,7 +83,7 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
 
 StatusOr<std::optional<ReadSegment>> ReadRefinementSegment(Span<const uint8_t> bytes, int level) {
   using Result = std::optional<ReadSegment>;
-  Cursor cursor(bytes);
+  ByteCursor cursor(bytes);
   const uint32_t length = cursor.Varint();
   const uint16_t checksum = cursor.Word16();
   if (cursor.malformed())

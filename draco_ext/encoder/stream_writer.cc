@@ -10,25 +10,11 @@
 #include "common/coefficient_coding.h"
 #include "common/crc32.h"
 #include "common/stream_layout.h"
+#include "encoder/byte_writer.h"
 #include "encoder/range_encoder.h"
 
 namespace lacerta {
 namespace {
-
-void PutWord16(uint32_t value, Bytes* bytes) {
-  bytes->push_back(static_cast<uint8_t>(value));
-  bytes->push_back(static_cast<uint8_t>(value >> 8));
-}
-
-void PutWord32(uint32_t value, Bytes* bytes) {
-  PutWord16(value & 0xffff, bytes);
-  PutWord16(value >> 16, bytes);
-}
-
-void PutVarint(size_t value, Bytes* bytes) {
-  for (; value >= 0x80; value >>= 7) bytes->push_back(static_cast<uint8_t>(value | 0x80));
-  bytes->push_back(static_cast<uint8_t>(value));
-}
 
 void PutSteps(const LevelSteps& s, Bytes* bytes) {
   PutWord16(StepToBits(s.normal_step), bytes);
