@@ -20,7 +20,8 @@ class BitModel {
  public:
   BitModel() = default;
   // one: the probability of a one to begin with, in 1/65536.
-  explicit constexpr BitModel(uint32_t one) : fast_(one << 8), slow_(one << 8) {}
+  // seen: bits that this is worth, at most 160: how firmly the model begins with it.
+  explicit constexpr BitModel(uint32_t one, uint32_t seen = 0) : fast_(one << 8), slow_(one << 8), count_(seen) {}
 
   // Probability of a one in 1/65536.
   uint32_t ProbabilityOfOne() const {

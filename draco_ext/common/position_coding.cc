@@ -45,7 +45,7 @@ Spread SpreadMemory::Expect(uint32_t vertex, const Expectation& expectation) con
   const Mean& mean = overall_[static_cast<size_t>(expectation.foresight)];
   Spread result{mean.along / mean.count, mean.across / mean.count};
   if (expectation.foresight == Foresight::kFlaps) {
-    constexpr int64_t kOverallWeight = 2;
+    constexpr int64_t kOverallWeight = 10;
     int64_t count = kOverallWeight;
     result.along *= kOverallWeight;
     result.across *= kOverallWeight;

@@ -54,6 +54,16 @@ class SpreadMemory {
 
 class DifferenceModels {
  public:
+  DifferenceModels() {
+    for (auto& set : farther_) {
+      for (size_t shape = 0; shape < kShapes; ++shape) {
+        for (size_t bin = 0; bin < kUnary; ++bin) {
+          set[shape][bin] = BitModel(bin == 0 ? kFirst[shape] : bin < 6 ? kOther[shape] : std::max(kOther[shape], 40000u), kSeen);
+        }
+      }
+    }
+  }
+
   // value: |value| < 2^27. scale: its mean magnitude in 1/16. set: 0..2, kinds of values that share models.
   template <typename Coder>
   int64_t Code(size_t set, int64_t scale, int64_t value, Coder* coder) {
@@ -74,7 +84,12 @@ class DifferenceModels {
 
  private:
   static constexpr uint32_t kUnary = 14;
-  std::array<std::array<std::array<BitModel, kUnary>, 6>, 3> farther_;
+  static constexpr size_t kShapes = 6;
+  // To begin with: chances of leaving the first bin and the others, as bases of many meshes have them, and what they are worth.
+  static constexpr std::array<uint32_t, kShapes> kFirst = {25000, 35000, 45000, 51500, 55500, 45000};
+  static constexpr std::array<uint32_t, kShapes> kOther = {8000, 14000, 25500, 35500, 44000, 39000};
+  static constexpr uint32_t kSeen = 24;
+  std::array<std::array<std::array<BitModel, kUnary>, kShapes>, 3> farther_;
   std::array<LengthModels, 3> far_;
 };
 
@@ -107,6 +122,7 @@ StatusOr<std::vector<LatticePoint>> CodePositions(const Topology& t, const Latti
       point[c] = static_cast<int32_t>(value);
     }
     memory.Add(v, expected, difference);
+
     predictor.SetPoint(v, point);
   }
   return predictor.TakePoints();

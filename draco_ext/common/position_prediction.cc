@@ -8,12 +8,15 @@
 namespace lacerta {
 namespace {
 
-// round(512 cos(2 pi / n)) for n = 2.. 24; more edges count as 24.
-constexpr std::array<int32_t, 23> kTurns = {-512, -256, 0,   158, 256, 319, 362, 392, 414, 431, 443, 453,
-                                            461,  468,  473, 477, 481, 484, 487, 489, 491, 493, 495};
+// 256 + 1.5 (512 cos(2 pi / n) - 256) for n = 2.. 24, half as much again as equal angles would make it: bases are coded best so. More
+// edges count as 24.
+constexpr std::array<int32_t, 23> kTurns = {-896, -512, -128, 109, 256, 350, 415, 460, 493, 518, 536, 551, 563, 574, 581, 587, 593, 598, 602, 605, 608, 611, 614};
 
 // More flaps of a vertex are left out: sums then stay below 2^62.
 constexpr uint32_t kMostFlaps = 256;
+// Of the equation that puts a vertex at a neighbor, which keeps it from where few flaps would shoot it. (64 * 256^2 is the weight of
+// one of a parallelogram's two equations.)
+constexpr int64_t kNeighborWeight = int64_t{1} << 20;
 
 // Lists by vertex, one after the other.
 void Gather(uint32_t num_vertices, const std::vector<std::pair<uint32_t, uint32_t>>& pairs, std::vector<uint32_t>* first,
@@ -52,6 +55,7 @@ PositionPredictor::PositionPredictor(const Topology& t)
   turn_.reserve(t.num_vertices);
   for (uint32_t v = 0; v < t.num_vertices; ++v) {
     const uint32_t whole = on_border[v] ? 2 * (uint32_t{t.valence[v]} - 1) : t.valence[v];
+    
     turn_.push_back(kTurns[std::clamp(whole, 2u, 24u) - 2]);
   }
 }
@@ -73,7 +77,7 @@ Expectation PositionPredictor::Expect(uint32_t vertex) const {
     const int64_t value = DivideRounded(sum, count);
     result.point[static_cast<size_t>(c)] = static_cast<int32_t>(std::clamp<int64_t>(value, -kMaxLatticeValue, kMaxLatticeValue));
   };
-  if (equations.weight > 0) {
+  if (equations.num_flaps > 0) {
     result.foresight = Foresight::kFlaps;
     for (int c = 0; c < 3; ++c) set(c, equations.target[static_cast<size_t>(c)], equations.weight);
     result.weight = equations.weight;
@@ -100,6 +104,14 @@ void PositionPredictor::SetPoint(uint32_t vertex, const LatticePoint& point) {
   points_[vertex] = point;
   is_known_[vertex] = 1;
   last_ = vertex;
+  for (const uint32_t u : neighbors(vertex)) {
+    if (is_known_[u]) continue;
+    Equations& sums = equations_[u];
+    if (sums.num_neighbors++ >= 2 * kMostFlaps) continue;
+    for (size_t c = 0; c < 3; ++c) sums.target[c] += kNeighborWeight * point[c];
+    sums.weight += kNeighborWeight;
+    if (sums.num_flaps > 0) queue_.emplace(sums.weight, ~u);
+  }
   for (uint32_t i = first_flap_[vertex]; i < first_flap_[vertex + 1]; ++i) {
     if (++num_known_[flaps_[i]] == 3) UseFlap(flaps_[i]);
   }
@@ -121,7 +133,7 @@ void PositionPredictor::UseFlap(uint32_t edge) {
     coefficient[static_cast<size_t>(end)] = t - 512;
     int64_t squares = 0;
     for (const int64_t x : coefficient) squares += x * x;
-    const int64_t weight = (int64_t{1} << 24) / squares;
+        const int64_t weight = (int64_t{1} << 24) / squares;
     const int64_t mine = coefficient[unknown];
     for (size_t c = 0; c < 3; ++c) {
       int64_t rest = 0;

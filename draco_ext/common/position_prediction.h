@@ -58,7 +58,7 @@ class PositionPredictor {
     LatticeVector target{};
     int64_t weight = 0;
     LatticeVector normal{};
-    uint32_t num_flaps = 0;
+    uint32_t num_flaps = 0, num_neighbors = 0;
   };
 
   void UseFlap(uint32_t edge);
