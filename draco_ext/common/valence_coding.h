@@ -48,6 +48,14 @@ struct GrowthLimits {
 
 class ValenceModels {
  public:
+  ValenceModels() {
+    for (size_t context = 0; context < kContexts; ++context) {
+      large_[context] = BitModel(kLarge[context], kSeen);
+      for (size_t i = 0; i < kUnary; ++i) larger_[context][i] = BitModel(kLarger[context][std::min<size_t>(i, 2)], kSeen);
+      for (size_t i = 0; i < 2; ++i) smaller_[context][i] = BitModel(kSmaller[context][i], kSeen);
+    }
+  }
+
   // context: of the gate.
   template <typename Coder>
   uint32_t CodeValence(uint32_t context, uint32_t valence, Coder* coder) {
@@ -67,13 +75,19 @@ class ValenceModels {
   }
 
   static constexpr uint32_t kContexts = 6;
-  BitModel dummy{2000};
-  std::array<BitModel, 3> joins{BitModel(2000), BitModel(2000), BitModel(2000)};
+  BitModel dummy{600, kSeen};
+  std::array<BitModel, 2> joins{BitModel(130, kSeen), BitModel(470, kSeen)};  // with one free edge at the focus, with more
   BitModel joins_far;
   LengthModels join_distance;
 
  private:
   static constexpr uint32_t kUnary = 10;
+  static constexpr uint32_t kSeen = 16;
+  // To begin with, as bases of many meshes have them.
+  static constexpr uint32_t kLarge[kContexts] = {57000, 51000, 39000, 31000, 20000, 43000};
+  static constexpr uint32_t kLarger[kContexts][3] = {{37000, 18000, 10000}, {24500, 13000, 8000},  {22000, 12000, 8000},
+                                                     {22600, 17000, 17000}, {16000, 8000, 8000}, {27000, 17000, 15000}};
+  static constexpr uint32_t kSmaller[kContexts][2] = {{12000, 9000}, {3200, 6300}, {2300, 11700}, {4700, 19600}, {2700, 20800}, {12000, 13000}};
   std::array<BitModel, kContexts> large_;
   std::array<std::array<BitModel, kUnary>, kContexts> larger_;
   std::array<std::array<BitModel, 2>, kContexts> smaller_;
@@ -166,7 +180,7 @@ class MeshGrower {
     const uint32_t after = front_[focus].next;
     GrowthStep step = guide_.Ask(front_, focus);
     if (front_.live().size() >= 5) {
-      step.joins = coder_.Code(models_.joins[std::min(front_[focus].free, 3u) - 1], step.joins);
+      step.joins = coder_.Code(models_.joins[front_[focus].free > 1], step.joins);
     } else {
       step.joins = false;
     }
