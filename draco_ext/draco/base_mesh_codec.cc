@@ -13,9 +13,11 @@
 
 #include "common/stream_layout.h"
 #include "common/subdivision.h"
+#include "decoder/compact_base.h"
 #include "draco/mesh_conversion.h"
 #include "draco/smallest_stream.h"
 #include "draco/stock_stream.h"
+#include "encoder/compact_base_encoder.h"
 
 namespace lacerta {
 namespace {
@@ -131,6 +133,22 @@ Status PlaceOnLattice(const IntegerMesh& integers, float step, Bytes* stream) {
   return SetQuantizationGrid(grid, stream);
 }
 
+StatusOr<CodedBase> EncodeCompact(const BaseMesh& base) {
+  LACERTA_ASSIGN_OR_RETURN(CompactBaseBytes compact, EncodeCompactBaseSmallest(base));
+  CodedBase result;
+  result.stream = std::move(compact.bytes);
+  result.mesh = std::move(compact.mesh);
+  result.vertex_map = std::move(compact.vertex_map);
+  result.coding = BaseCoding::kCompact;
+  return result;
+}
+
+StatusOr<Bytes> RecodeCompact(const BaseMesh& moved) {
+  LACERTA_ASSIGN_OR_RETURN(CompactBaseBytes compact, EncodeCompactBase(moved));
+  if (compact.mesh.triangles != moved.triangles) return InternalError("the moved base mesh was coded in another order");
+  return std::move(compact.bytes);
+}
+
 }  // namespace
 
 float ShortStep(float step) {
@@ -139,7 +157,8 @@ float ShortStep(float step) {
   return std::ldexp(std::floor(std::ldexp(significand, 8)), exponent - 8);
 }
 
-StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base) {
+StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base, BaseCoding coding) {
+  if (coding == BaseCoding::kCompact) return EncodeCompact(base);
   LACERTA_ASSIGN_OR_RETURN(const IntegerMesh integers, ToIntegerMesh(base));
   LACERTA_ASSIGN_OR_RETURN(StockAttempt attempt, SmallestEdgebreakerStream(integers.mesh, integers.bits));
   CodedBase result;
@@ -172,6 +191,7 @@ StatusOr<Bytes> RecodeBaseMesh(const CodedBase& first, const BaseMesh& moved) {
   if (moved.lattice.size() != first.mesh.lattice.size() || moved.triangles != first.mesh.triangles) {
     return InvalidArgument("the base to code again has another connectivity");
   }
+  if (first.coding == BaseCoding::kCompact) return RecodeCompact(moved);
   BaseMesh as_given{moved.step, std::vector<std::array<int32_t, 3>>(moved.lattice.size()), first.traversal.triangles};
   for (size_t v = 0; v < moved.lattice.size(); ++v) as_given.lattice[first.vertex_map[v]] = moved.lattice[v];
   LACERTA_ASSIGN_OR_RETURN(const IntegerMesh integers, ToIntegerMesh(as_given));
@@ -193,6 +213,16 @@ StatusOr<DecodedBase> DecodeBaseMesh(Span<const uint8_t> stream, const DecodeLim
   LACERTA_ASSIGN_OR_RETURN(result.mesh, FromDracoMesh(*stock.mesh));
   result.bytes_used = stock.bytes_used;
   return result;
+}
+
+StatusOr<DecodedBase> DecodeBaseOf(const StreamParts& parts, const DecodeLimits& limits) {
+  if (parts.coding == BaseCoding::kCompact) {
+    LACERTA_ASSIGN_OR_RETURN(const CompactBase compact, DecodeCompactBase(parts.base, limits));
+    return DecodedBase{compact.ToMesh(), parts.base.size()};
+  }
+  LACERTA_ASSIGN_OR_RETURN(DecodedBase base, DecodeBaseMesh(parts.base, limits));
+  if (base.bytes_used == parts.base.size()) return base;
+  return InvalidData("it takes " + std::to_string(base.bytes_used) + " bytes, not the " + std::to_string(parts.base.size()) + " announced");
 }
 
 }  // namespace lacerta

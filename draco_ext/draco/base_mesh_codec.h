@@ -1,4 +1,4 @@
-// The base mesh of a progressive stream as a stock Draco stream (docs/format.md, "Base section").
+// The base mesh of a progressive stream as a stock Draco stream or in compact form (docs/format.md, "Base section").
 #ifndef LACERTA_DRACO_BASE_MESH_CODEC_H_
 #define LACERTA_DRACO_BASE_MESH_CODEC_H_
 
@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "draco/base_coding.h"
+#include "draco/custom_form.h"
 #include "draco/stock_stream.h"
 #include "lacerta/decoder.h"
 #include "lacerta/mesh.h"
@@ -24,19 +26,20 @@ struct BaseTraversal {
 // A coded base and what every decoder gets from it. Draco renumbers vertices and triangles and rotates triangles, so
 // all that follows must be computed on `mesh`.
 struct CodedBase {
-  Bytes stream;                      // edgebreaker, bitstream version 2.2
+  Bytes stream;                      // edgebreaker, bitstream version 2.2; or the compact base
   BaseMesh mesh;                     // in the decoder's order; step as in the input
   std::vector<uint32_t> vertex_map;  // #V0, coded vertex -> input vertex
-  BaseTraversal traversal;
+  BaseTraversal traversal;           // of stock streams
+  BaseCoding coding = BaseCoding::kStock;
 };
 
-// Codes a base mesh without loss in the fewest bytes found among Draco's settings and starting triangles;
-// deterministic. The decoder's floats round to the lattice exactly; they equal BaseMesh::ToMesh() bit for bit where
+// Codes a base mesh without loss in the fewest bytes found among Draco's settings and starting triangles, or for kCompact among
+// starting triangles; deterministic. Of stock streams: the decoder's floats round to the lattice exactly; they equal BaseMesh::ToMesh() bit for bit where
 // step * lattice is exact in float, as with a step from ShortStep and |lattice| < 2^16. BaseMeshFromPositions(decoded
 // mesh, step) gives `mesh` again. Fails with kInvalidData on an empty base, a step that is not a positive normal float,
 // lattice values of 2^24 or more or spanning more than 24 bits, a base that is not an oriented manifold
 // (BuildTopology), and where Draco does not carry it unchanged.
-StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base);
+StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base, BaseCoding coding = BaseCoding::kStock);
 
 // Codes `moved`, which is first.mesh with other lattice points or another step, so that a decoder gets its vertices and
 // triangles in this very order. Fails as EncodeBaseMesh does.
@@ -46,13 +49,16 @@ StatusOr<Bytes> RecodeBaseMesh(const CodedBase& first, const BaseMesh& moved);
 float ShortStep(float step);
 
 struct DecodedBase {
-  TriangleMesh mesh;      // floats as stock Draco gives them
+  TriangleMesh mesh;      // floats as stock Draco gives them, or as of the compact base
   size_t bytes_used = 0;  // length of the base at the front of the stream; what follows is refinement
 };
 
 // Decodes the stock Draco mesh stream at the front of `stream`, whatever its method and attributes, and checks all
 // indices and positions. Safe on untrusted bytes as far as libdraco is: its counts are checked against `limits` first.
 StatusOr<DecodedBase> DecodeBaseMesh(Span<const uint8_t> stream, const DecodeLimits& limits);
+
+// Decodes the base of the custom form, of either coding. Fails where it does not decode or does not fill its part.
+StatusOr<DecodedBase> DecodeBaseOf(const StreamParts& parts, const DecodeLimits& limits);
 
 }  // namespace lacerta
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "draco/base_coding.h"
 #include "draco/normal_mesh_candidate.h"
 #include "lacerta/codec.h"
 #include "lacerta/status.h"
@@ -17,6 +18,7 @@ struct ResolvedTarget {
   bool is_rate = false;
   double bytes = 0;  // where is_rate: at most
   double psnr = 0;   // else: at least, dB
+  BaseCoding base_coding = BaseCoding::kStock;
 };
 
 // A stream with what is known of its quality.

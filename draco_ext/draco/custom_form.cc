@@ -37,7 +37,7 @@ Span<const uint8_t> Rest(Span<const uint8_t> bytes, const draco::DecoderBuffer& 
 
 Bytes CustomFormPayload(const StreamParts& parts) {
   draco::EncoderBuffer buffer;
-  buffer.Encode(kCustomFormVersion);
+  buffer.Encode(static_cast<uint8_t>(kCustomFormVersion | static_cast<int>(parts.coding) << 4));
   draco::EncodeVarint(static_cast<uint32_t>(parts.base.size()), &buffer);
   buffer.Encode(parts.base.data(), parts.base.size());
   buffer.Encode(parts.refinement.data(), parts.refinement.size());
@@ -58,11 +58,15 @@ bool IsCustomForm(Span<const uint8_t> stream) {
 
 StatusOr<StreamParts> SplitCustomFormPayload(Span<const uint8_t> payload) {
   draco::DecoderBuffer buffer = MakeBuffer(payload);
-  uint8_t version = 0;
-  if (!buffer.Decode(&version)) return InvalidData("custom form ends before its version");
+  uint8_t version_and_coding = 0;
+  if (!buffer.Decode(&version_and_coding)) return InvalidData("custom form ends before its version");
+  const int version = version_and_coding & 15, coding = version_and_coding >> 4;
   if (version != kCustomFormVersion) {
     return Unsupported("custom form has version " + std::to_string(version) + ", this library reads version " +
                        std::to_string(kCustomFormVersion));
+  }
+  if (coding > static_cast<int>(BaseCoding::kCompact)) {
+    return Unsupported("custom form has a base of coding " + std::to_string(coding) + ", which this library does not know");
   }
   uint64_t base_size = 0;
   if (!draco::DecodeVarint(&base_size, &buffer) || base_size > std::numeric_limits<uint32_t>::max()) {
@@ -73,7 +77,7 @@ StatusOr<StreamParts> SplitCustomFormPayload(Span<const uint8_t> payload) {
     return InvalidData("base stream of the custom form is cut off: " + std::to_string(rest.size()) + " of " +
                        std::to_string(base_size) + " bytes are there");
   }
-  return StreamParts{rest.First(base_size), rest.Subspan(base_size)};
+  return StreamParts{rest.First(base_size), rest.Subspan(base_size), static_cast<BaseCoding>(coding)};
 }
 
 StatusOr<StreamParts> SplitCustomForm(Span<const uint8_t> stream) {

@@ -48,12 +48,8 @@ DecodedMesh RefineBase(TriangleMesh base, Span<const uint8_t> refinement, const 
 }
 
 StatusOr<DecodedMesh> DecodeCustomFormParts(const StreamParts& parts, const DecodeOptions& options) {
-  auto base = DecodeBaseMesh(parts.base, options.limits);
+  auto base = DecodeBaseOf(parts, options.limits);
   if (!base.ok()) return base.status().WithContext("base of the custom form");
-  if (base.value().bytes_used != parts.base.size()) {
-    return InvalidData("base of the custom form takes " + std::to_string(base.value().bytes_used) + " bytes, not the " +
-                       std::to_string(parts.base.size()) + " announced");
-  }
   return RefineBase(std::move(base).value().mesh, parts.refinement, options);
 }
 

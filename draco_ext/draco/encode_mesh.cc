@@ -40,14 +40,21 @@ Status ReportLevels(const SurfaceDistanceMeter& meter, const CodedStream& stream
   return Status();
 }
 
-EncodedMesh FromZeroLevel(ZeroLevelStream zero, EncodeReport report, std::string reason) {
+// A base section, of either coding, and what follows it.
+struct EncodedParts {
+  EncodedMesh mesh;
+  BaseCoding coding = BaseCoding::kStock;
+};
+
+EncodedParts FromZeroLevel(ZeroLevelStream zero, EncodeReport report, std::string reason) {
   report.reason = std::move(reason);
   report.levels = {{zero.mesh.positions.size(), zero.mesh.triangles.size(), zero.stream.size(), zero.distance, zero.psnr}};
   const size_t size = zero.stream.size();
-  return {std::move(zero.stream), {size}, std::move(report)};
+  return {{std::move(zero.stream), {size}, std::move(report)}, zero.coding};
 }
 
-StatusOr<EncodedMesh> FromRefinement(const SurfaceDistanceMeter& meter, const ChosenStream& chosen, EncodeReport report, std::string reason) {
+StatusOr<EncodedParts> FromRefinement(const SurfaceDistanceMeter& meter, const ChosenStream& chosen, BaseCoding coding, EncodeReport report,
+                                      std::string reason) {
   report.progressive = true;
   report.reason = std::move(reason);
   report.normal_share = chosen.normal_share;
@@ -59,12 +66,14 @@ StatusOr<EncodedMesh> FromRefinement(const SurfaceDistanceMeter& meter, const Ch
   result.stream.insert(result.stream.end(), coded.stream.refinement.begin(), coded.stream.refinement.end());
   result.part_sizes = coded.stream.part_sizes;
   result.report = std::move(report);
-  return result;
+  return EncodedParts{std::move(result), coding};
 }
 
-// The target of a stream in Draco form that meets `target` in the form asked for.
+// The target of base section and refinement that meets `target` in the form asked for.
 ResolvedTarget LessForm(ResolvedTarget target, StreamForm form) {
-  if (!target.is_rate || form == StreamForm::kDraco) return target;
+  if (form == StreamForm::kDraco) return target;
+  target.base_coding = BaseCoding::kCompact;
+  if (!target.is_rate) return target;
   const Bytes base(static_cast<size_t>(std::min(target.bytes, 1e5)));  // its length is in the custom form
   target.bytes -= static_cast<double>(WriteCustomForm({base, {}}).size() - base.size());
   return target;
@@ -85,17 +94,18 @@ std::string ReasonForMiss(const MeasuredStream& coded, const ResolvedTarget& tar
   return "";
 }
 
-// Draco form to the form asked for: the custom form only adds to the base section.
-StatusOr<EncodedMesh> InForm(StreamForm form, EncodedMesh mesh) {
-  if (form == StreamForm::kDraco) return mesh;
+// In the form asked for: the custom form adds a header.
+EncodedMesh InForm(StreamForm form, EncodedParts parts) {
+  EncodedMesh& mesh = parts.mesh;
+  if (form == StreamForm::kDraco) return std::move(mesh);
   const size_t base_size = mesh.part_sizes.front();
   const Span<const uint8_t> stream(mesh.stream);
-  Bytes custom = WriteCustomForm({stream.First(base_size), stream.Subspan(base_size)});
+  Bytes custom = WriteCustomForm({stream.First(base_size), stream.Subspan(base_size), parts.coding});
   const size_t added = custom.size() - mesh.stream.size();
   mesh.stream = std::move(custom);
   mesh.part_sizes.front() += added;
   for (LevelReport& level : mesh.report.levels) level.bytes += added;
-  return mesh;
+  return std::move(mesh);
 }
 
 // The mesh on its own connectivity where that is subdivided and reaches the target; none else.
@@ -110,7 +120,7 @@ std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const Sur
 }
 
 // The remeshed surface at the target, or a simplified mesh in stock Draco form where that is better.
-StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
+StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                     const EncodeOptions& options, EncodeReport report) {
   const auto progress = [&](double share, const char* stage) {
     if (options.progress) options.progress(share, stage);
@@ -119,7 +129,7 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
   progress(0.0, "looking at the surface");
   if (const std::optional<ChosenStream> subdivided = EncodeSubdivided(mesh, meter, target, options.mode)) {
     report.subdivided_input = true;
-    return FromRefinement(meter, *subdivided, report, ReasonForMiss(subdivided->measured, target));
+    return FromRefinement(meter, *subdivided, target.base_coding, report, ReasonForMiss(subdivided->measured, target));
   }
   const SurfaceParts parts = SplitSurface(mesh);
   if (parts.refined.triangles.empty()) return Unsupported("no component has triangles enough to be worth remeshing");
@@ -146,7 +156,7 @@ StatusOr<EncodedMesh> EncodeSurface(const TriangleMesh& mesh, const SurfaceDista
   }
   const std::string reason = simpler ? ReasonForSimpler(*simpler, target) : ReasonForMiss(chosen.measured, target);
   if (simpler) return FromZeroLevel(std::move(*simpler), report, reason);
-  return FromRefinement(meter, chosen, report, reason);
+  return FromRefinement(meter, chosen, target.base_coding, report, reason);
 }
 
 }  // namespace
@@ -163,7 +173,7 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   report.input_triangles = mesh.triangles.size();
   report.diagonal = meter.diagonal();
 
-  StatusOr<EncodedMesh> encoded = EncodeSurface(mesh, meter, target, options, report);
+  StatusOr<EncodedParts> encoded = EncodeSurface(mesh, meter, target, options, report);
   if (!encoded.ok()) {  // without refinement, then, with the reason
     if (options.progress) options.progress(0.1, "simplifying");
     LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, CodeZeroLevel(mesh, meter, target));

@@ -12,9 +12,7 @@ namespace lacerta {
 draco::Status Encoder::EncodeMeshToBuffer(const draco::Mesh& mesh, draco::EncoderBuffer* out_buffer) {
   const StatusOr<TriangleMesh> triangles = FromDracoMesh(mesh);
   if (!triangles.ok()) return ToDracoStatus(triangles.status());
-  EncodeOptions options = options_;
-  options.form = StreamForm::kDraco;
-  StatusOr<EncodedMesh> result = EncodeMesh(triangles.value(), options);
+  StatusOr<EncodedMesh> result = EncodeMesh(triangles.value(), options_);
   if (!result.ok()) return ToDracoStatus(result.status());
   EncodedMesh& encoded = result.value();
   report_ = std::move(encoded.report);
@@ -23,8 +21,9 @@ draco::Status Encoder::EncodeMeshToBuffer(const draco::Mesh& mesh, draco::Encode
     if (!out_buffer->Encode(stream.data(), stream.size())) return draco::ErrorStatus("buffer is in bit mode");
     return draco::OkStatus();
   }
-  const size_t base_size = encoded.part_sizes.front();
-  ProgressiveMeshEncoder encoder(StreamParts{stream.First(base_size), stream.Subspan(base_size)});
+  const StatusOr<StreamParts> parts = SplitCustomForm(stream);  // the same behind the metadata of `mesh`
+  if (!parts.ok()) return ToDracoStatus(parts.status());
+  ProgressiveMeshEncoder encoder(parts.value());
   encoder.SetMesh(mesh);
   return encoder.Encode(draco::EncoderOptions::CreateDefaultOptions(), out_buffer);
 }

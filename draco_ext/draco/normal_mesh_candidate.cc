@@ -50,14 +50,15 @@ struct Remeshed {
 };
 
 // held: grows where another remesh, without those collapses, is due; *is_due says so.
-StatusOr<Remeshed> RemeshAt(const RefinableSurface& input, uint32_t time, int num_levels, std::vector<uint32_t>* held, bool* is_due) {
+StatusOr<Remeshed> RemeshAt(const RefinableSurface& input, uint32_t time, int num_levels, std::vector<uint32_t>* held, bool* is_due,
+                            BaseCoding coding) {
   const TriangleMesh& mesh = input.surface.mesh();
   BaseDomain domain(input.history, input.history.CutWithout(*held, time));
   const uint32_t num_refined = domain.num_vertices();
   const TriangleMesh nominal = Together({domain.PositionsOn(mesh), domain.triangles()}, input.still);
   const auto nominal_step = static_cast<float>(kNominalStep * BoundingBoxDiagonal(nominal));
   Remeshed result;
-  LACERTA_ASSIGN_OR_RETURN(result.base, EncodeBaseMesh(RoundToLattice(nominal, nominal_step)));
+  LACERTA_ASSIGN_OR_RETURN(result.base, EncodeBaseMesh(RoundToLattice(nominal, nominal_step), coding));
   const CodedBase& base = result.base;
 
   // From here on in the order in which decoders get the base.
@@ -89,15 +90,16 @@ NormalMeshCandidate::NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh)
       target_(MakeSurfaceTarget(normal_mesh_)),
       detail_scales_(DetailScales(target_)) {}
 
-StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels) {
+StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels,
+                                                          BaseCoding coding) {
   const auto num_vertices = static_cast<uint32_t>(input.surface.mesh().positions.size());
   const uint32_t time = std::min(input.history.num_collapses(), num_vertices - std::min(num_vertices, num_base_vertices));
   std::vector<uint32_t> held;
   bool is_due = false;
-  LACERTA_ASSIGN_OR_RETURN(Remeshed best, RemeshAt(input, time, num_levels, &held, &is_due));
+  LACERTA_ASSIGN_OR_RETURN(Remeshed best, RemeshAt(input, time, num_levels, &held, &is_due, coding));
   const double first_base = best.mesh.mesh.num_base_vertices, largest_base = std::max(kLargestGrowth * first_base, first_base + kFreeVertices);
   for (int round = 1; is_due && round < kReversalRounds; ++round) {
-    LACERTA_ASSIGN_OR_RETURN(Remeshed other, RemeshAt(input, time, num_levels, &held, &is_due));
+    LACERTA_ASSIGN_OR_RETURN(Remeshed other, RemeshAt(input, time, num_levels, &held, &is_due, coding));
     if (other.mesh.mesh.num_base_vertices > largest_base) break;
     if (other.reversed.share < best.reversed.share) best = std::move(other);
   }

@@ -35,8 +35,9 @@ class NormalMeshCandidate {
  public:
   // The base mesh is the one that the history has at `num_base_vertices` vertices, or its coarsest if that is larger, with the
   // still part beside it; up to a quarter or 8 vertices finer where the remesh would be reversed (remesh/reversal.h). num_levels: above
-  // the base. Fails where Draco cannot carry the base.
-  static StatusOr<NormalMeshCandidate> Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels);
+  // the base. Fails where the base cannot be coded.
+  static StatusOr<NormalMeshCandidate> Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels,
+                                              BaseCoding coding = BaseCoding::kStock);
 
   // normal_mesh: over base.mesh, in its order.
   NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);

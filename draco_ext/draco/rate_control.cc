@@ -171,7 +171,7 @@ class Ladder {
     if (rung->levels == 0) rung->levels = LevelsFor(RungSize(number), num_input_);
     for (rung->levels += rung->lacks_level;; ++rung->levels) {
       LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate,
-                               NormalMeshCandidate::Create(surface_, RungSize(number), rung->levels));
+                               NormalMeshCandidate::Create(surface_, RungSize(number), rung->levels, target_.base_coding));
       rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(candidate));
       constexpr uint64_t kRoughSamples = 30'000;
       const TriangleMesh remesh = rung->candidate->RemeshedSurface();
@@ -241,16 +241,16 @@ StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_
   switch (target.kind) {
     case EncodeTarget::Kind::kBytes:
       LACERTA_RETURN_IF_ERROR(check(100, 1e12, "bytes"));
-      return ResolvedTarget{true, target.value, 0};
+      return ResolvedTarget{true, target.value, 0, BaseCoding::kStock};
     case EncodeTarget::Kind::kBitsPerVertex:
       LACERTA_RETURN_IF_ERROR(check(1e-3, 96, "bits per vertex"));
-      return ResolvedTarget{true, target.value * static_cast<double>(num_input_vertices) / 8, 0};
+      return ResolvedTarget{true, target.value * static_cast<double>(num_input_vertices) / 8, 0, BaseCoding::kStock};
     case EncodeTarget::Kind::kPsnr:
       LACERTA_RETURN_IF_ERROR(check(20, 140, "dB"));
-      return ResolvedTarget{false, 0, target.value};
+      return ResolvedTarget{false, 0, target.value, BaseCoding::kStock};
     case EncodeTarget::Kind::kError:
       LACERTA_RETURN_IF_ERROR(check(1e-7, 0.1, "of the diagonal"));
-      return ResolvedTarget{false, 0, -20 * std::log10(target.value)};
+      return ResolvedTarget{false, 0, -20 * std::log10(target.value), BaseCoding::kStock};
   }
   return InvalidArgument("unknown kind of target");
 }

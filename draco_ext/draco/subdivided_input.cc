@@ -29,12 +29,12 @@ bool TellsVertices(const std::vector<Vec3f>& decoded, const TriangleMesh& expect
 
 }  // namespace
 
-StatusOr<NormalMeshCandidate> SubdividedCandidate(const TriangleMesh& input, const Unsubdivided& split) {
+StatusOr<NormalMeshCandidate> SubdividedCandidate(const TriangleMesh& input, const Unsubdivided& split, BaseCoding coding) {
   TriangleMesh base;
   for (uint32_t v = 0; v < split.num_base_vertices; ++v) base.positions.push_back(input.positions[split.input_vertex[v]]);
   base.triangles = split.base_triangles;
   const auto nominal_step = static_cast<float>(kNominalStep * BoundingBoxDiagonal(input));
-  LACERTA_ASSIGN_OR_RETURN(CodedBase coded, EncodeBaseMesh(RoundToLattice(base, nominal_step)));
+  LACERTA_ASSIGN_OR_RETURN(CodedBase coded, EncodeBaseMesh(RoundToLattice(base, nominal_step), coding));
 
   const Unsubdivided ordered = Reorder(split, coded.vertex_map, coded.mesh.triangles);
   const InputSurface surface(input, BuildTopology(static_cast<uint32_t>(input.positions.size()), input.triangles).value());
@@ -53,7 +53,7 @@ StatusOr<NormalMeshCandidate> SubdividedCandidate(const TriangleMesh& input, con
 
 StatusOr<ChosenStream> CodeSubdivided(const TriangleMesh& input, const Unsubdivided& split, const SurfaceDistanceMeter& meter,
                                       const ResolvedTarget& target, EncodeMode mode) {
-  LACERTA_ASSIGN_OR_RETURN(const NormalMeshCandidate candidate, SubdividedCandidate(input, split));
+  LACERTA_ASSIGN_OR_RETURN(const NormalMeshCandidate candidate, SubdividedCandidate(input, split, target.base_coding));
   ChosenStream chosen;
   chosen.remesh_psnr = Psnr(0, meter.diagonal());
   chosen.normal_share = NormalShare(candidate.normal_mesh());

@@ -14,7 +14,8 @@ namespace lacerta {
 
 // The way to code `input` on the base and levels of `split`, which UndoSubdivision found in it. Every decoded vertex is within
 // one step of its own along each axis of its local frame, but in paper mode. Fails where Draco cannot carry the base.
-StatusOr<NormalMeshCandidate> SubdividedCandidate(const TriangleMesh& input, const Unsubdivided& split);
+StatusOr<NormalMeshCandidate> SubdividedCandidate(const TriangleMesh& input, const Unsubdivided& split,
+                                                  BaseCoding coding = BaseCoding::kStock);
 
 // Codes it at the target; the nearest stream where that is out of reach, which the result says. Fails as above, and with
 // kUnsupported where the bytes of a rate target do not tell vertices from their neighbors.

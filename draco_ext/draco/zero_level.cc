@@ -8,10 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "decoder/compact_base.h"
 #include "draco/base_mesh_codec.h"
 #include "draco/mesh_conversion.h"
 #include "draco/smallest_stream.h"
 #include "draco/stock_stream.h"
+#include "encoder/compact_base_encoder.h"
 #include "geometry/bounding_box.h"
 
 namespace lacerta {
@@ -106,6 +108,17 @@ StatusOr<CodedZeroLevel> Encode(const GridMesh& quantized, CodingEffort effort) 
   return result;
 }
 
+StatusOr<CodedZeroLevel> EncodeCompactLattice(const LatticeMesh& mesh, CodingEffort effort) {
+  const BaseMesh base = {mesh.step, mesh.lattice, mesh.triangles};
+  LACERTA_ASSIGN_OR_RETURN(CompactBaseBytes coded, effort == CodingEffort::kQuick ? EncodeCompactBase(base, mesh.origin)
+                                                                                 : EncodeCompactBaseSmallest(base, mesh.origin));
+  CodedZeroLevel result;
+  result.stream = std::move(coded.bytes);
+  result.mesh = CompactBase{std::move(coded.mesh), mesh.origin}.ToMesh();
+  result.coding = BaseCoding::kCompact;
+  return result;
+}
+
 }  // namespace
 
 StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits) {
@@ -117,7 +130,11 @@ StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits) {
   return Encode(quantized, CodingEffort::kFull);
 }
 
-StatusOr<CodedZeroLevel> EncodeLatticeMesh(const LatticeMesh& mesh, CodingEffort effort) {
+StatusOr<CodedZeroLevel> EncodeLatticeMesh(const LatticeMesh& mesh, CodingEffort effort, BaseCoding coding) {
+  if (coding == BaseCoding::kCompact) {
+    StatusOr<CodedZeroLevel> compact = EncodeCompactLattice(mesh, effort);
+    if (compact.ok()) return compact;
+  }
   GridMesh quantized;
   int32_t extent = 1;
   for (const auto& p : mesh.lattice) {

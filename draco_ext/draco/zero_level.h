@@ -2,6 +2,7 @@
 #ifndef LACERTA_DRACO_ZERO_LEVEL_H_
 #define LACERTA_DRACO_ZERO_LEVEL_H_
 
+#include "draco/base_coding.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
 #include "remesh/mesh_fit.h"
@@ -9,9 +10,10 @@
 namespace lacerta {
 
 struct CodedZeroLevel {
-  Bytes stream;             // bitstream version 2.2
-  TriangleMesh mesh;        // what a stock decoder gets, in its order
+  Bytes stream;             // bitstream version 2.2, or a compact base
+  TriangleMesh mesh;        // what a decoder gets, in its order
   bool sequential = false;  // edgebreaker would have changed the surface
+  BaseCoding coding = BaseCoding::kStock;
 };
 
 enum class CodingEffort {
@@ -28,8 +30,9 @@ enum class CodingEffort {
 StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits);
 
 // The same for a mesh on a lattice of any step: the decoder's step is that one but for rounding. Fails with kInvalidData on a
-// lattice that spans more than 22 bits too.
-StatusOr<CodedZeroLevel> EncodeLatticeMesh(const LatticeMesh& mesh, CodingEffort effort);
+// lattice that spans more than 22 bits too. coding: kCompact gives a compact base where the mesh is an oriented manifold without
+// isolated vertices, and a stock stream where it is not.
+StatusOr<CodedZeroLevel> EncodeLatticeMesh(const LatticeMesh& mesh, CodingEffort effort, BaseCoding coding = BaseCoding::kStock);
 
 }  // namespace lacerta
 

@@ -56,7 +56,8 @@ void ZeroLevelCandidate::FitForRate(double lattice_distortion, int rounds) {
   if (source_ == Source::kSimplified) fit_distortion_ = Distortion(model_);
 }
 
-StatusOr<ZeroLevelCandidate::Coding> ZeroLevelCandidate::Code(double step, int rounds, CodingEffort effort) const {
+StatusOr<ZeroLevelCandidate::Coding> ZeroLevelCandidate::Code(double step, int rounds, CodingEffort effort,
+                                                                    BaseCoding base_coding) const {
   Coding coding;
   // Draco rounds in floats, which hold no finer lattice. And decoders compute in floats.
   constexpr double kFinest = 1.0 / (1 << 21);
@@ -71,7 +72,7 @@ StatusOr<ZeroLevelCandidate::Coding> ZeroLevelCandidate::Code(double step, int r
     model = std::move(model_again);
   }
   coding.distortion = Distortion(model);
-  LACERTA_ASSIGN_OR_RETURN(coding.coded, EncodeLatticeMesh(coding.lattice, effort));
+  LACERTA_ASSIGN_OR_RETURN(coding.coded, EncodeLatticeMesh(coding.lattice, effort, base_coding));
   coding.bytes = coding.coded.stream.size();
   return coding;
 }

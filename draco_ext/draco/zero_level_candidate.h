@@ -38,8 +38,8 @@ class ZeroLevelCandidate {
   // `lattice_distortion` to the squared distance.
   void FitForRate(double lattice_distortion, int rounds);
 
-  // On the lattice of this step, or of the finest that Draco keeps. rounds: of descent, each after looking anew.
-  StatusOr<Coding> Code(double step, int rounds, CodingEffort effort) const;
+  // On the lattice of this step, or of the finest that Draco keeps. coding: see EncodeLatticeMesh. rounds: of descent, each after looking anew.
+  StatusOr<Coding> Code(double step, int rounds, CodingEffort effort, BaseCoding coding = BaseCoding::kStock) const;
 
   // The step that adds about `lattice_distortion`.
   static double StepFor(double lattice_distortion);

@@ -146,7 +146,7 @@ class ZeroLevelSearch {
     constexpr int kSteps = 3;
     double db = 0;
     for (int i = 0; i < kSteps; ++i) {
-      LACERTA_ASSIGN_OR_RETURN(trial->coding, candidate.Code(step, 1, CodingEffort::kQuick));
+      LACERTA_ASSIGN_OR_RETURN(trial->coding, candidate.Code(step, 1, CodingEffort::kQuick, target_.base_coding));
       db = 10 * std::log10(trial->coding.distortion / distortion_);
       if (std::fabs(db) < 0.3) break;
       step = NextStep(step, trial->coding.distortion, candidate.fit_distortion());
@@ -171,7 +171,7 @@ class ZeroLevelSearch {
     double step = candidate.StepFor(fit);
     constexpr int kSteps = 5;
     for (int i = 0; i < kSteps; ++i) {
-      LACERTA_ASSIGN_OR_RETURN(ZeroLevelCandidate::Coding coding, candidate.Code(step, 1, CodingEffort::kQuick));
+      LACERTA_ASSIGN_OR_RETURN(ZeroLevelCandidate::Coding coding, candidate.Code(step, 1, CodingEffort::kQuick, target_.base_coding));
       const double excess = static_cast<double>(coding.bytes) / target_.bytes;
       const bool fits = excess <= 1;
       if (i == 0 || fits || !trial->meets) trial->coding = std::move(coding);
@@ -194,6 +194,7 @@ class ZeroLevelSearch {
   ZeroLevelStream Measured(CodedZeroLevel coded) const {
     ZeroLevelStream result;
     result.stream = std::move(coded.stream);
+    result.coding = coded.coding;
     result.mesh = std::move(coded.mesh);
     result.distance = DecodedDistance(meter_, result.mesh);
     result.psnr = Psnr(result.distance, meter_.diagonal());
@@ -217,7 +218,7 @@ class ZeroLevelSearch {
     std::optional<ZeroLevelStream> best;
     double best_distortion = 0;
     for (int i = 0; i < num_tries || (!best->meets_target && i < 2 * num_tries); ++i) {
-      LACERTA_ASSIGN_OR_RETURN(ZeroLevelCandidate::Coding coding, candidate.Code(step, descent_rounds, CodingEffort::kFull));
+      LACERTA_ASSIGN_OR_RETURN(ZeroLevelCandidate::Coding coding, candidate.Code(step, descent_rounds, CodingEffort::kFull, target_.base_coding));
       const double distortion = bias * coding.distortion;
       const auto bytes = static_cast<double>(coding.bytes);
       const bool is_small_enough = !best || !best->meets_target || coding.bytes < best->stream.size();

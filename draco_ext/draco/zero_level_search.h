@@ -13,6 +13,7 @@ namespace lacerta {
 
 struct ZeroLevelStream {
   Bytes stream;
+  BaseCoding coding = BaseCoding::kStock;  // of the stream
   TriangleMesh mesh;   // as decoded
   double distance = 0;  // d_S to the input, model units
   double psnr = 0;      // dB

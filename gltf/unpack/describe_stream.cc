@@ -47,10 +47,9 @@ StatusOr<StreamInfo> DescribeStream(Span<const uint8_t> stream, const DecodeLimi
   StreamParts parts;
   if (IsCustomForm(stream)) {
     LACERTA_ASSIGN_OR_RETURN(parts, SplitCustomForm(stream));
-  } else {
-    parts.base = stream;
   }
-  LACERTA_ASSIGN_OR_RETURN(const DecodedBase base, DecodeBaseMesh(parts.base, limits));
+  LACERTA_ASSIGN_OR_RETURN(const DecodedBase base,
+                           IsCustomForm(stream) ? DecodeBaseOf(parts, limits) : DecodeBaseMesh(stream, limits));
   if (!IsCustomForm(stream)) parts.refinement = stream.Subspan(base.bytes_used);
   StreamInfo info;
   info.diagonal = BoundingBoxDiagonal(base.mesh);

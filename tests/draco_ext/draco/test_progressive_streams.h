@@ -22,7 +22,8 @@ struct ProgressiveStream {
     stream.insert(stream.end(), refinement.begin(), refinement.end());
     return stream;
   }
-  Bytes CustomForm() const { return WriteCustomForm({base.stream, refinement}); }
+  // With the stock stream, or with the compact base and the refinement that fits its order.
+  Bytes CustomForm() const { return WriteCustomForm({base.stream, refinement, base.coding}); }
 };
 
 // The refinement of a base by the coefficients that every hand-made stream holds.
