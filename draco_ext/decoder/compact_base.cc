@@ -87,6 +87,11 @@ StatusOr<CompactBase> DecodeCompactBase(Span<const uint8_t> bytes, const DecodeL
   LACERTA_ASSIGN_OR_RETURN(result.mesh.lattice,
                            CodePositions(topology.value(), header.origin, header.extent_bits, {}, &coder));
   result.mesh.triangles = std::move(grown.triangles);
+  for (const Vec3f& p : result.ToMesh().positions) {
+    for (int c = 0; c < 3; ++c) {
+      if (!std::isfinite(p[c])) return InvalidData("a position of the compact base does not fit a float");
+    }
+  }
   return result;
 }
 

@@ -59,6 +59,14 @@ TEST(CustomFormTest, RefusesUnknownVersionByName) {
   EXPECT_THAT(status.message(), HasSubstr("version 2"));
 }
 
+TEST(CustomFormTest, TellsHowTheBaseIsCoded) {
+  Bytes stream = WriteCustomForm({Counting(50), Bytes(), BaseCoding::kCompact});
+  EXPECT_EQ(stream[11], 0x11);
+  EXPECT_EQ(SplitCustomForm(stream).value().coding, BaseCoding::kCompact);
+  stream[11] = 0x21;
+  EXPECT_EQ(SplitCustomForm(stream).status().code(), StatusCode::kUnsupported);
+}
+
 TEST(CustomFormTest, RefusesLengthsThatDoNotFit) {
   // 2^63 and more, and a varint without end.
   Bytes stream = {'D', 'R',  'A',  'C',  'O',  2,    2,    1,    'L',  0,    0,

@@ -214,6 +214,7 @@ TEST(DecodeMeshTest, SurvivesEveryChangedByteOfTheDracoForm) {
 
 TEST(DecodeMeshTest, SurvivesEveryChangedByteOfTheCustomForm) {
   ExpectSoundOnMutations(MakeProgressiveStream(Octahedron(), 2).CustomForm());
+  ExpectSoundOnMutations(MakeProgressiveStream(Octahedron(), 2, /*joined=*/false, BaseCoding::kCompact).CustomForm());
 }
 
 TEST(DecodeMeshTest, SurvivesEveryChangedByteOfASequentialStream) {

@@ -28,8 +28,9 @@ TEST_P(GoldenFormsTest, Decodes) {
   const std::string name = GetParam();
   const std::string path = std::string(LACERTA_GOLDEN_DIR) + "/v1/" + name + ".drc";
   if (std::getenv("LACERTA_REGENERATE_GOLDEN") != nullptr) {
-    const ProgressiveStream stream = MakeProgressiveStream(Torus(6, 5), kNumLevels);
-    const Bytes bytes = name == "custom_form" ? stream.CustomForm() : stream.DracoForm();
+    const BaseCoding coding = name == "custom_form_compact" ? BaseCoding::kCompact : BaseCoding::kStock;
+    const ProgressiveStream stream = MakeProgressiveStream(Torus(6, 5), kNumLevels, /*joined=*/false, coding);
+    const Bytes bytes = name == "draco_form" ? stream.DracoForm() : stream.CustomForm();
     std::ofstream out(path, std::ios::binary);
     out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     ASSERT_TRUE(out.good()) << "cannot write " << path;
@@ -50,7 +51,7 @@ TEST_P(GoldenFormsTest, Decodes) {
   EXPECT_EQ(decoded.value().mesh.triangles, expected.triangles);
 }
 
-INSTANTIATE_TEST_SUITE_P(Version1, GoldenFormsTest, ::testing::Values("draco_form", "custom_form"),
+INSTANTIATE_TEST_SUITE_P(Version1, GoldenFormsTest, ::testing::Values("draco_form", "custom_form", "custom_form_compact"),
                          [](const auto& form) { return std::string(form.param); });
 
 }  // namespace

@@ -39,9 +39,10 @@ inline TriangleMesh Refined(const BaseMesh& base, int num_levels) {
 }
 
 // joined: vertices at one point are joined (BaseTags::joined).
-inline ProgressiveStream MakeProgressiveStream(const BaseMesh& base, int num_levels, bool joined = false) {
+inline ProgressiveStream MakeProgressiveStream(const BaseMesh& base, int num_levels, bool joined = false,
+                                               BaseCoding coding = BaseCoding::kStock) {
   ProgressiveStream result;
-  result.base = EncodeBaseMesh(base).value();
+  result.base = EncodeBaseMesh(base, coding).value();
   BaseTags tags;
   if (joined) tags.joined = FirstAtSamePoint(result.base.mesh.lattice);
   RefinementBytes written = MakeRefinement(result.base.mesh, num_levels, tags);
