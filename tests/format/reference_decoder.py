@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """A second decoder, written from docs/format.md alone and laid out like it: plain, slow, without a third-party module.
 
-reference_decoder.py GOLDEN.json...   decodes the .lac file beside each and compares coefficients and positions.
+reference_decoder.py GOLDEN.json...   decodes the .lac file beside each and compares coefficients and positions, or the compact base
+                                      in the .cbase file beside it and compares lattice and triangles.
 """
 import json
 import math
@@ -185,9 +186,9 @@ class RangeDecoder:
 
 
 class Model:
-    def __init__(self, initial=32768):
+    def __init__(self, initial=32768, count=0):
         self.fast = self.slow = initial * 256
-        self.count = 0
+        self.count = count
 
     def probability(self):
         return min(max(self.fast + self.slow >> 9, 24), 65536 - 24)
@@ -470,6 +471,364 @@ def synthesize(level, sets, normal, tangential, positions):
         positions.append(add(middles[e], scale(t1, d1), scale(t2, d2), scale(n, dequantize(normal[e], *sets["normal"]))))
 
 
+# --- Integers of the compact base ---
+
+class LengthModels:
+    def __init__(self):
+        self.longer = [Model() for _ in range(31)]
+        self.second_bit = [Model() for _ in range(31)]
+
+
+def decode_by_length(decoder, models):
+    bits = 0
+    while bits < 30 and decoder.bit(models.longer[bits]):
+        bits += 1
+    number = 1
+    for i in reversed(range(bits)):
+        number = number << 1 | int(decoder.bit(models.second_bit[bits]) if i + 1 == bits else decoder.even())
+    return number - 1
+
+
+def decode_uniform(decoder, count):
+    first = 0
+    while count > 1:
+        upper = count // 2
+        lower = count - upper
+        if decoder.bit(Model((upper << 16) // count)):
+            first, count = first + lower, upper
+        else:
+            count = lower
+    return first
+
+
+# --- Connectivity of the compact base ---
+
+class Entry:
+    def __init__(self, vertex, free):
+        self.vertex, self.free = vertex, free
+
+
+class Connectivity:
+    LARGE = [57000, 51000, 39000, 31000, 20000, 43000]
+    LARGER = [(37000, 18000, 10000), (24500, 13000, 8000), (22000, 12000, 8000), (22600, 17000, 17000), (16000, 8000, 8000),
+              (27000, 17000, 15000)]
+    SMALLER = [(12000, 9000), (3200, 6300), (2300, 11700), (4700, 19600), (2700, 20800), (12000, 13000)]
+
+    def __init__(self, decoder, num_vertices, num_borders):
+        self.decoder, self.num_vertices, self.num_borders = decoder, num_vertices, num_borders
+        self.large = [Model(p, 16) for p in self.LARGE]
+        self.larger = [[Model(p[min(i, 2)], 16) for i in range(10)] for p in self.LARGER]
+        self.smaller = [[Model(x, 16) for x in p] for p in self.SMALLER]
+        self.dummy, self.joins = Model(600, 16), [Model(130, 16), Model(470, 16)]
+        self.joins_far, self.join_distance = Model(), LengthModels()
+        self.huge, self.dummy_valence = LengthModels(), LengthModels()
+        self.valence, self.dummies, self.triangles, self.live, self.changes = [], 0, [], [], 0
+
+    def decode_valence(self, context):
+        if self.decoder.bit(self.large[context]):
+            valence = 6
+            while valence < 16 and self.decoder.bit(self.larger[context][valence - 6]):
+                valence += 1
+            return valence if valence < 16 else valence + decode_by_length(self.decoder, self.huge)
+        valence = 5
+        while valence > 3 and self.decoder.bit(self.smaller[context][valence - 4]):
+            valence -= 1
+        return valence
+
+    def new_vertex(self, valence):
+        assert len(self.valence) < self.num_vertices
+        self.valence.append(valence)
+        return len(self.valence) - 1
+
+    def is_dummy(self, vertex):
+        return vertex >= self.num_vertices
+
+    def add_triangle(self, *t):
+        assert len(set(t)) == 3 and sum(map(self.is_dummy, t)) <= 1
+        if not any(map(self.is_dummy, t)):
+            self.triangles.append(list(t))
+
+    def set_free(self, entry, free):
+        self.changes += 1
+        entry.free, entry.changed = free, self.changes
+
+    def make(self, vertex, free):
+        entry = Entry(vertex, free)
+        self.live.append(entry)
+        self.set_free(entry, free)
+        return entry
+
+    @staticmethod
+    def link(a, b):
+        a.next, b.prev = b, a
+
+    def remove(self, entry):
+        self.link(entry.prev, entry.next)
+        place = self.live.index(entry)
+        self.live[place] = self.live[-1]
+        self.live.pop()
+
+    def decode(self):
+        while len(self.valence) < self.num_vertices:
+            valences = [self.decode_valence(5) for _ in range(3)]
+            t = [self.new_vertex(x) for x in valences]
+            self.add_triangle(*t)
+            entries = [self.make(v, x - 2) for v, x in zip(t, valences)]
+            for k in range(3):
+                self.link(entries[k], entries[(k + 1) % 3])
+            while self.live:
+                focus = min(self.live, key=lambda e: (e.free, -e.changed))
+                (self.extend if focus.free else self.close)(focus)
+        assert self.dummies == self.num_borders
+        return self.triangles
+
+    def close(self, focus):
+        before, after = focus.prev, focus.next
+        self.add_triangle(after.vertex, focus.vertex, before.vertex)
+        if after.next is before:
+            assert before.free == after.free == 0
+            for entry in (focus, before, after):
+                self.remove(entry)
+            return
+        assert before.free and after.free
+        self.set_free(before, before.free - 1)
+        self.set_free(after, after.free - 1)
+        self.remove(focus)
+
+    def extend(self, focus):
+        after = focus.next
+        joins = len(self.live) >= 5 and self.decoder.bit(self.joins[focus.free > 1])
+        assert after.free
+        if joins:
+            return self.join(focus)
+        if self.is_dummy(focus.vertex) or self.is_dummy(after.vertex):
+            context = 4
+        else:
+            total = self.valence[focus.vertex] + self.valence[after.vertex]
+            context = (total >= 11) + (total >= 13) + (total >= 15)
+        self.set_free(after, after.free - 1)
+        self.set_free(focus, focus.free - 1)
+        if self.dummies < self.num_borders and self.decoder.bit(self.dummy):
+            valence = 3 + decode_by_length(self.decoder, self.dummy_valence)
+            vertex = self.num_vertices + self.dummies
+            self.dummies += 1
+        else:
+            valence = self.decode_valence(context)
+            vertex = self.new_vertex(valence)
+        self.add_triangle(after.vertex, focus.vertex, vertex)
+        entry = self.make(vertex, valence - 2)
+        self.link(focus, entry)
+        self.link(entry, after)
+
+    def near(self, focus):
+        def walk(entry, step, end):
+            found = []
+            while entry is not end and entry is not focus and entry is not focus.next and len(found) < 16:
+                found.append(entry)
+                entry = getattr(entry, step)
+            return found
+        forward = walk(focus.next.next.next, "next", focus.prev)
+        backward = walk(focus.prev.prev, "prev", focus.next.next)
+        result = []
+        for i in range(16):
+            for entry in forward[i:i + 1] + backward[i:i + 1]:
+                if entry.free >= 2 and entry not in result:
+                    result.append(entry)
+        return result
+
+    def join(self, focus):
+        after, near = focus.next, self.near(focus)
+        if not near or self.decoder.bit(self.joins_far):
+            target = self.live[decode_uniform(self.decoder, len(self.live))]
+        else:
+            target = near[decode_by_length(self.decoder, self.join_distance)]
+        assert target not in (focus, after, focus.prev, after.next) and target.free >= 2
+        rest = target.free - 2
+        first = decode_uniform(self.decoder, rest + 1)
+        self.add_triangle(after.vertex, focus.vertex, target.vertex)
+        self.set_free(after, after.free - 1)
+        self.set_free(focus, focus.free - 1)
+        before_target = target.prev
+        other = self.make(target.vertex, rest - first)
+        self.link(focus, target)
+        self.link(before_target, other)
+        self.link(other, after)
+        self.set_free(target, first)
+
+
+# --- Positions of the compact base ---
+
+TURNS = [-896, -512, -128, 109, 256, 350, 415, 460, 493, 518, 536, 551, 563, 574, 581, 587, 593, 598, 602, 605, 608, 611, 614]
+LATTICE_LIMIT = (1 << 24) - 1
+USUAL_ROOT, LARGEST_SPREAD = 2896, 1 << 31
+
+
+def rounded(a, b):
+    return (a + b // 2) // b
+
+
+def scaled_to(v, bits):
+    shift = max(0, max(map(abs, v)).bit_length() - 24)
+    v = [x >> shift for x in v]
+    length = math.isqrt(sum(x * x for x in v))
+    return [x * (1 << bits) // length if length else 0 for x in v]
+
+
+class Positions:
+    FIRST, OTHER = [25000, 35000, 45000, 51500, 55500, 45000], [8000, 14000, 25500, 35500, 44000, 39000]
+
+    def __init__(self, level, origin, extent_bits):
+        self.level, self.origin = level, origin
+        n = level.num_vertices
+        self.flap = [[a, b] + [level.opposite(f, e) for f in level.faces(e)] for e, (a, b, _, _) in enumerate(level.edges)]
+        self.flaps_of = [[] for _ in range(n)]
+        for e, flap in enumerate(self.flap):
+            for v in flap if len(flap) == 4 else []:
+                self.flaps_of[v].append(e)
+        whole = [2 * (len(es) - 1) if any(level.on_curve[e] for e in es) else len(es) for es in level.at_vertex]
+        self.turn = [TURNS[min(max(x, 2), 24) - 2] for x in whole]
+        self.neighbors = [[level.other_end(e, v) for e in es] for v, es in enumerate(level.at_vertex)]
+        self.point, self.last = [None] * n, None
+        self.num_flaps, self.num_neighbors, self.weight = [0] * n, [0] * n, [0] * n
+        self.target, self.normal = [[0] * 3 for _ in range(n)], [[0] * 3 for _ in range(n)]
+        extent = 16 << extent_bits
+        edge = extent // (1 + math.isqrt(n))
+        self.overall = {"flaps": [edge // 2, edge // 4, 1], "neighbors": [edge, edge, 1], "nothing": [extent // 2, extent // 2, 1]}
+        self.seen = [None] * n
+        self.farther = [[[Model(self.FIRST[s] if b == 0 else self.OTHER[s] if b < 6 else max(self.OTHER[s], 40000), 24)
+                          for b in range(14)] for s in range(6)] for _ in range(3)]
+        self.far = [LengthModels() for _ in range(3)]
+
+    def set_point(self, v, point):
+        self.point[v] = point
+        self.last = v
+        for u in self.neighbors[v]:
+            if self.point[u] is None:
+                self.num_neighbors[u] += 1
+                if self.num_neighbors[u] <= 512:
+                    self.target[u] = [t + (x << 20) for t, x in zip(self.target[u], point)]
+                    self.weight[u] += 1 << 20
+        for e in self.flaps_of[v]:
+            unknown = [i for i in range(4) if self.point[self.flap[e][i]] is None]
+            if len(unknown) == 1:
+                self.use_flap(self.flap[e], unknown[0])
+
+    def use_flap(self, flap, unknown):
+        v = flap[unknown]
+        if self.num_flaps[v] == 256:
+            return
+        self.num_flaps[v] += 1
+        for end in range(2):
+            t = self.turn[flap[end]]
+            factors = [-t, -t, 256, 256]
+            factors[end] = t - 512
+            weight = (1 << 24) // sum(x * x for x in factors)
+            mine = factors[unknown]
+            for c in range(3):
+                rest = sum(factors[i] * self.point[flap[i]][c] for i in range(4) if i != unknown)
+                self.target[v][c] -= weight * mine * rest
+            self.weight[v] += weight * mine * mine
+        a, b, c = [self.point[flap[i]] for i in range(4) if i != unknown]
+        sign = 1 if unknown in (0, 3) else -1
+        self.normal[v] = [x + sign * y for x, y in zip(self.normal[v], cross(sub(b, a), sub(c, a)))]
+
+    def next(self):
+        known = [v for v in range(len(self.point)) if self.point[v] is None and self.num_flaps[v]]
+        if known:
+            return min(known, key=lambda v: (-self.weight[v], v))
+        return self.point.index(None)
+
+    def expect(self, v):
+        """Foresight, point, root of the weight, normal."""
+        limit = lambda x: min(max(x, -LATTICE_LIMIT), LATTICE_LIMIT)
+        if self.num_flaps[v]:
+            point = [limit(rounded(x, self.weight[v])) for x in self.target[v]]
+            return "flaps", point, math.isqrt(self.weight[v]), scaled_to(self.normal[v], 12)
+        around = [self.point[u] for u in self.neighbors[v] if self.point[u] is not None]
+        if around:
+            return "neighbors", [limit(rounded(sum(p[c] for p in around), len(around))) for c in range(3)], USUAL_ROOT, [0] * 3
+        return "nothing", self.point[self.last], USUAL_ROOT, [0] * 3
+
+    def expect_spread(self, v, foresight, root):
+        along, across, count = self.overall[foresight]
+        spread = [along // count, across // count]
+        if foresight == "flaps":
+            seen = [self.seen[u] for u in self.neighbors[v] if self.seen[u]]
+            spread = [(10 * s + sum(x[i] for x in seen)) * USUAL_ROOT // (root * (10 + len(seen))) for i, s in enumerate(spread)]
+        return [min(s, LARGEST_SPREAD) for s in spread]
+
+    def add_spread(self, v, foresight, root, normal, difference):
+        across = abs(dot(normal, difference)) // 256
+        whole = 16 * math.isqrt(dot(difference, difference))
+        rest = math.isqrt(max(0, whole * whole - across * across))
+        spread = [rest * 163 // 256, across] if any(normal) else [whole * 148 // 256] * 2
+        spread = [min(s * root // USUAL_ROOT, LARGEST_SPREAD) for s in spread]
+        mean = self.overall[foresight]
+        self.overall[foresight] = [mean[0] + spread[0], mean[1] + spread[1], mean[2] + 1]
+        if foresight == "flaps":
+            self.seen[v] = spread
+
+    def decode_number(self, decoder, models, scale):
+        width = max(1, (scale + 16) >> 5)
+        shape = 5 if width > 1 else (scale >= 6) + (scale >= 12) + (scale >= 20) + (scale >= 32)
+        bin_ = 0
+        while bin_ < 14 and decoder.bit(self.farther[models][shape][bin_]):
+            bin_ += 1
+        if bin_ == 14:
+            bin_ += decode_by_length(decoder, self.far[models])
+        if bin_ == 0:
+            return decode_uniform(decoder, 2 * width - 1) - width + 1
+        negative = decoder.even()
+        result = bin_ * width + decode_uniform(decoder, width)
+        return -result if negative else result
+
+    def decode(self, decoder):
+        one = 4096
+        self.set_point(self.next(), self.origin)
+        for _ in range(1, len(self.point)):
+            v = self.next()
+            foresight, expected, root, normal = self.expect(v)
+            along, across = self.expect_spread(v, foresight, root)
+            order = sorted(range(3), key=lambda c: abs(normal[c]))
+            along = max(along, 1)
+            ratio = min((across << 6) // along, 128)
+            m = min(max(ratio * ratio, 64), 4 * one) - one
+            known, difference = one, [0] * 3
+            for k, c in enumerate(order):
+                forecast = 0
+                for j in order[:k]:
+                    forecast += ((m * normal[c] // one) * normal[j] // known) * difference[j]
+                forecast = min(max(rounded(forecast, one), -1 << 26), 1 << 26)
+                square = normal[c] * normal[c] // one
+                variance = max(16, one + m * square // known)
+                scale = along * math.isqrt(variance) // 64
+                known = max(16, known + m * square // one)
+                models = 2 if foresight != "flaps" else int(k == 2)
+                difference[c] = forecast + self.decode_number(decoder, models, scale)
+                assert abs(expected[c] + difference[c]) <= LATTICE_LIMIT
+            self.add_spread(v, foresight, root, normal, difference)
+            self.set_point(v, add(expected, difference))
+        return self.point
+
+
+# --- Compact base ---
+
+def decode_compact_base(data):
+    reader = Reader(data)
+    num_vertices, num_borders = reader.varint(), reader.varint()
+    bits, offset = reader.unsigned(2), [0.0] * 3
+    step = step_value(bits)
+    if bits == 0:
+        step, *offset = struct.unpack("<4f", reader.take(16))
+    extent_bits = reader.unsigned(1)
+    origin = [x >> 1 ^ -(x & 1) for x in (reader.varint() for _ in range(3))]
+    assert num_vertices >= 3 and num_borders <= num_vertices // 3 and extent_bits <= 25
+    decoder = RangeDecoder(data[reader.at:])
+    triangles = Connectivity(decoder, num_vertices, num_borders).decode()
+    lattice = Positions(base_level(num_vertices, triangles), origin, extent_bits).decode(decoder)
+    return {"step": step, "offset": offset, "lattice": lattice, "triangles": triangles}
+
+
 # --- The decoder on one page ---
 
 def decode(base, data):
@@ -491,6 +850,11 @@ def main(paths):
     for path in paths:
         with open(path, encoding="utf-8") as file:
             golden = json.load(file)
+        if "levels" not in golden:
+            with open(path[:-len("json")] + "cbase", "rb") as file:
+                assert decode_compact_base(file.read()) == golden, path + ": compact base differs"
+            print("%s: %d vertices, %d triangles" % (path, len(golden["lattice"]), len(golden["triangles"])))
+            continue
         with open(path[:-len("json")] + "lac", "rb") as file:
             tags, coefficients, positions = decode(golden["base"], file.read())
         assert tags == golden["base"].get("tags", dict.fromkeys(tags, [])), path + ": tags differ"

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <random>
 #include <string>
 #include <utility>
@@ -121,14 +124,47 @@ TEST(CompactBaseTest, CodesHandles) {
   ExpectRoundTrip(OnLattice(shapes::TwoHoledPlate(6), 1.0f / 64), "genus 2");
 }
 
-TEST(CompactBaseTest, CodesSeveralComponents) {
+BaseMesh FiveComponents() {
   BaseMesh many = Octahedron();
   for (const BaseMesh& other : {Square(), Torus(5, 4), Square(), Octahedron()}) {
     const auto offset = static_cast<uint32_t>(many.lattice.size());
     many.lattice.insert(many.lattice.end(), other.lattice.begin(), other.lattice.end());
     for (const Triangle& t : other.triangles) many.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   }
-  ExpectRoundTrip(many, "five components");
+  return many;
+}
+
+TEST(CompactBaseTest, CodesSeveralComponents) { ExpectRoundTrip(FiveComponents(), "five components"); }
+
+// Known bytes: tests/golden/v<version>/*.cbase, with the meshes that they hold beside them for tests/format/reference_decoder.py.
+// LACERTA_REGENERATE_GOLDEN=1 writes them anew; do that only before the version is released.
+TEST(CompactBaseTest, HasTheGoldenBytes) {
+  BaseMesh odd = FiveComponents();
+  odd.step = 0.1f;
+  const std::vector<std::pair<std::string, CompactBaseBytes>> cases = {
+      {"compact_five_components", EncodeCompactBase(odd, {1.5f, -0.25f, 3}).value()},
+      {"compact_torus", EncodeCompactBase(Torus(14, 9)).value()}};
+  for (const auto& [name, coded] : cases) {
+    const std::string path = std::string(LACERTA_GOLDEN_DIR) + "/v1/" + name;
+    if (std::getenv("LACERTA_REGENERATE_GOLDEN") != nullptr) {
+      const CompactBase base = DecodeCompactBase(coded.bytes, {}).value();
+      std::ofstream(path + ".cbase", std::ios::binary).write(reinterpret_cast<const char*>(coded.bytes.data()), static_cast<std::streamsize>(coded.bytes.size()));
+      std::ofstream json(path + ".json");
+      json.precision(17);
+      json << "{\"step\": " << base.mesh.step << ", \"offset\": [" << base.offset.x << ", " << base.offset.y << ", " << base.offset.z << "]";
+      const auto list = [&](const char* key, const auto& rows) {
+        json << ",\n\"" << key << "\": [";
+        for (size_t i = 0; i < rows.size(); ++i) json << (i > 0 ? ", [" : "[") << rows[i][0] << ", " << rows[i][1] << ", " << rows[i][2] << "]";
+        json << "]";
+      };
+      list("lattice", base.mesh.lattice);
+      list("triangles", base.mesh.triangles);
+      json << "}\n";
+    }
+    std::ifstream in(path + ".cbase", std::ios::binary);
+    ASSERT_TRUE(in.good()) << path;
+    EXPECT_EQ(Bytes(std::istreambuf_iterator<char>(in), {}), coded.bytes) << name;
+  }
 }
 
 TEST(CompactBaseTest, CodesRandomHoles) {
