@@ -33,7 +33,7 @@ struct EncodeTarget {
 // Where the stream can be opened.
 enum class StreamForm {
   kDraco,   // begins with a complete stock Draco stream of the base mesh: every Draco decoder shows the base
-  kCustom,  // one Draco header with our own method byte: only Lacerta opens it
+  kCustom,  // Draco's header with our own method byte, then a base mesh in compact form: smaller, and only Lacerta opens it
 };
 
 // How the coefficients are chosen and quantized (docs/decisions).
