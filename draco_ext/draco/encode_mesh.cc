@@ -81,8 +81,8 @@ ResolvedTarget LessForm(ResolvedTarget target, StreamForm form) {
 
 // Why a simplified mesh was taken.
 std::string ReasonForSimpler(const ZeroLevelStream& simpler, const ResolvedTarget& target) {
-  if (!simpler.meets_target) return "the target is out of reach; a simplified mesh in stock Draco form comes nearest";
-  return std::string("a simplified mesh in stock Draco form is ") + (target.is_rate ? "closer to the surface" : "smaller");
+  if (!simpler.meets_target) return "the target is out of reach; a simplified mesh without levels comes nearest";
+  return std::string("a simplified mesh without levels is ") + (target.is_rate ? "closer to the surface" : "smaller");
 }
 
 // Why a stream misses the target or leaves more of it than promised; empty where it does neither.
@@ -119,7 +119,7 @@ std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const Sur
   return std::move(chosen).value();
 }
 
-// The remeshed surface at the target, or a simplified mesh in stock Draco form where that is better.
+// The remeshed surface at the target, or a simplified mesh without levels where that is better.
 StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                     const EncodeOptions& options, EncodeReport report) {
   const auto progress = [&](double share, const char* stage) {

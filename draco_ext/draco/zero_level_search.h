@@ -1,4 +1,4 @@
-// Streams without refinement at a target: the mesh itself or a simplified one, fitted to it, in stock Draco form.
+// Streams without refinement at a target: the mesh itself or a simplified one, fitted to it.
 #ifndef LACERTA_DRACO_ZERO_LEVEL_SEARCH_H_
 #define LACERTA_DRACO_ZERO_LEVEL_SEARCH_H_
 

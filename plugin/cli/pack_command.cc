@@ -176,7 +176,7 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
       ->check(CLI::IsMember({"draco", "custom"}));
   pack->add_option("--mode", arguments->mode, "default, or paper: as published, open loop")
       ->check(CLI::IsMember({"default", "paper"}));
-  pack->add_option("--levels", arguments->levels, "any (default): refinement unless a simplified mesh in stock Draco form is clearly smaller; always; 0: never")
+  pack->add_option("--levels", arguments->levels, "any (default): refinement unless a simplified mesh without levels is clearly smaller; always; 0: never")
       ->check(CLI::IsMember({"any", "always", "0"}));
   pack->add_flag("--json", arguments->json, "Print a report as JSON");
   pack->footer(kExitCodeHelp);

@@ -44,9 +44,9 @@ enum class EncodeMode {
 
 // Whether a stream has refinement levels.
 enum class LevelChoice {
-  kWhereTheyPay,  // unless a simplified mesh in stock Draco form, without levels, is clearly smaller or closer
+  kWhereTheyPay,  // unless a simplified mesh without levels is clearly smaller or closer
   kAlways,        // wherever there is a component to remesh, for the sake of streaming
-  kNever,         // a simplified mesh in stock Draco form
+  kNever,         // a simplified mesh
 };
 
 struct EncodeOptions {

@@ -182,5 +182,22 @@ TEST(BaseMeshCodecTest, RefusesWhatIsNoManifold) {
   ExpectRefused(fin, "base mesh");
 }
 
+TEST(BaseMeshCodecTest, CodesCompactBasesInOneOrder) {
+  for (const BaseMesh& base : {Octahedron(), Torus(7, 6), Square(), TwoOctahedra()}) {
+    const CodedBase coded = EncodeBaseMesh(base, BaseCoding::kCompact).value();
+    EXPECT_LT(coded.stream.size(), EncodeBaseMesh(base).value().stream.size());
+    BaseMesh moved = coded.mesh;
+    moved.step *= 2;
+    for (auto& p : moved.lattice) p = {-p[1], 3 * p[2], p[0] + 11};
+    const Bytes stream = RecodeBaseMesh(coded, moved).value();
+    const DecodedBase decoded = DecodeBaseOf({stream, {}, BaseCoding::kCompact}, {}).value();
+    EXPECT_EQ(decoded.mesh.triangles, coded.mesh.triangles);
+    EXPECT_TRUE(SameBits(decoded.mesh.positions, moved.ToMesh().positions));
+    EXPECT_EQ(decoded.bytes_used, stream.size());
+    std::swap(moved.triangles[0], moved.triangles[1]);
+    EXPECT_EQ(RecodeBaseMesh(coded, moved).status().code(), StatusCode::kInvalidArgument);
+  }
+}
+
 }  // namespace
 }  // namespace lacerta

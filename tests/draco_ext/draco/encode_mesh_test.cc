@@ -17,6 +17,8 @@
 #include "lacerta/draco.h"
 #include "lacerta/surface_distance.h"
 #include "shapes/base_meshes.h"
+#include "decoder/compact_base.h"
+#include "draco/custom_form.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
@@ -83,6 +85,31 @@ TEST(EncodeMeshTest, CustomFormKeepsRateTargetsToo) {
   EXPECT_LE(encoded.stream.size(), 800u);
   EXPECT_GE(encoded.stream.size(), 784u);
   EXPECT_EQ(encoded.report.levels.back().bytes, encoded.stream.size());
+}
+
+// Nothing of stock Draco is in it, and that is less.
+TEST(EncodeMeshTest, CustomFormHoldsACompactBase) {
+  TriangleMesh parts = Scan();  // with a small part, which stands still
+  const auto offset = static_cast<uint32_t>(parts.positions.size());
+  const TriangleMesh small = shapes::Icosphere(1, 0.1f);
+  for (const Vec3f& p : small.positions) parts.positions.push_back(p + Vec3f{1.5f, 0, 0});
+  for (const Triangle& t : small.triangles) parts.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  for (const LevelChoice levels : {LevelChoice::kAlways, LevelChoice::kNever}) {
+    EncodeOptions options = OptionsFor(Kind::kPsnr, 50);
+    options.levels = levels;
+    const EncodedMesh stock = EncodeOrDie(parts, options);
+    options.form = StreamForm::kCustom;
+    const EncodedMesh custom = EncodeOrDie(parts, options);
+    const StatusOr<StreamParts> split = SplitCustomForm(custom.stream);
+    ASSERT_TRUE(split.ok()) << split.status().message();
+    EXPECT_EQ(split.value().coding, BaseCoding::kCompact);
+    EXPECT_EQ(split.value().refinement.empty(), levels == LevelChoice::kNever);
+    EXPECT_TRUE(DecodeCompactBase(split.value().base, {}).ok());
+    EXPECT_LT(static_cast<double>(custom.stream.size()), 0.97 * static_cast<double>(stock.stream.size()));
+    EXPECT_GT(static_cast<double>(custom.stream.size()), 0.6 * static_cast<double>(stock.stream.size()));
+    EXPECT_GE(DecodedPsnr(parts, custom.stream, 99), 50);
+    EXPECT_EQ(DecodeMesh(custom.stream, DecodeOptions()).value().mesh.triangles.size(), custom.report.levels.back().triangles);
+  }
 }
 
 TEST(EncodeMeshTest, ErrorTargetIsThePsnrTargetInAnotherUnit) {
