@@ -1,5 +1,3 @@
-#include "decoder/compact_base.h"
-
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -13,6 +11,7 @@
 #include "common/valence_coding.h"
 #include "decoder/byte_cursor.h"
 #include "decoder/range_decoder.h"
+#include "lacerta/decoder.h"
 
 namespace lacerta {
 namespace {

@@ -9,7 +9,7 @@ namespace lacerta {
 // The values are those of the custom form (docs/format.md).
 enum class BaseCoding : uint8_t {
   kStock = 0,    // a stock Draco mesh stream: all that the Draco form has
-  kCompact = 1,  // connectivity by valences, differential positions (decoder/compact_base.h)
+  kCompact = 1,  // connectivity by valences, differential positions (DecodeCompactBase)
 };
 
 }  // namespace lacerta

@@ -13,7 +13,7 @@
 
 #include "common/stream_layout.h"
 #include "common/subdivision.h"
-#include "decoder/compact_base.h"
+#include "lacerta/decoder.h"
 #include "draco/mesh_conversion.h"
 #include "draco/smallest_stream.h"
 #include "draco/stock_stream.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "decoder/compact_base.h"
+#include "lacerta/decoder.h"
 #include "draco/base_mesh_codec.h"
 #include "draco/mesh_conversion.h"
 #include "draco/smallest_stream.h"

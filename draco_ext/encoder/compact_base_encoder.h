@@ -1,4 +1,4 @@
-// Coding of a base mesh in compact form (docs/format.md, "Compact base"). Twin: decoder/compact_base.h.
+// Coding of a base mesh in compact form (docs/format.md, "Compact base"). Twin: decoder/compact_base.cc.
 #ifndef LACERTA_ENCODER_COMPACT_BASE_ENCODER_H_
 #define LACERTA_ENCODER_COMPACT_BASE_ENCODER_H_
 

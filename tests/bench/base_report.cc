@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "decoder/compact_base.h"
+#include "lacerta/decoder.h"
 #include "draco/base_mesh_codec.h"
 #include "encoder/compact_base_encoder.h"
 #include "encoder/quantizer.h"

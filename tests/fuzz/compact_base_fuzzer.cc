@@ -1,7 +1,7 @@
 // A compact base of arbitrary bytes: refused, or decoded within the limits to a mesh that codes to itself again.
 #include <cstdlib>
 
-#include "decoder/compact_base.h"
+#include "lacerta/decoder.h"
 #include "encoder/compact_base_encoder.h"
 #include "fuzz/fuzz_input.h"
 

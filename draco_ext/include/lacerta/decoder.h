@@ -37,6 +37,19 @@ struct BaseMesh {
 // coordinate is not finite, further than a quarter of a step away from the lattice, or |lattice| reaches 2^24.
 StatusOr<BaseMesh> BaseMeshFromPositions(const TriangleMesh& mesh, float step);
 
+// A base mesh as it comes out of its compact form, which the custom form of a stream carries (docs/format.md, "Compact base").
+struct CompactBase {
+  BaseMesh mesh;
+  Vec3f offset{0, 0, 0};  // model units, added to the positions of `mesh`; zero where a refinement follows
+
+  TriangleMesh ToMesh() const;
+};
+
+// Decodes the compact base that fills `bytes`: connectivity by valences, positions by differences. Its triangles are an oriented
+// manifold, with or without border, and every vertex has one. Safe on untrusted bytes. Fails with kInvalidData, or with kLimitExceeded
+// before memory is taken for more than `limits`.
+StatusOr<CompactBase> DecodeCompactBase(Span<const uint8_t> bytes, const DecodeLimits& limits);
+
 // The triangle mesh of one level (0 = base) of a semi-regular mesh; above the base, the still triangles come last. Fails with
 // kInvalidArgument where it has no such level and with kInvalidData where the base is not manifold or its tags do not fit it.
 StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level);

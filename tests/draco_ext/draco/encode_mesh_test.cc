@@ -17,7 +17,7 @@
 #include "lacerta/draco.h"
 #include "lacerta/surface_distance.h"
 #include "shapes/base_meshes.h"
-#include "decoder/compact_base.h"
+#include "lacerta/decoder.h"
 #include "draco/custom_form.h"
 #include "shapes/shapes.h"
 

@@ -1,5 +1,3 @@
-#include "decoder/compact_base.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,6 +17,7 @@
 #include "encoder/compact_base_encoder.h"
 #include "encoder/quantizer.h"
 #include "encoder/range_encoder.h"
+#include "lacerta/decoder.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
