@@ -9,8 +9,17 @@
 
 namespace lacerta::baselines {
 
-// Every vertex of the subdivided base at the point of the input that the parametrization puts at its dyadic barycentric coordinates.
-SemiRegularMesh MapsRemesh(const InputSurface& surface, const BaseDomain& domain, int num_levels);
+struct MapsOptions {
+  int num_levels = 5;
+  // Over the finest level: every vertex goes to the mean of its neighbors, then back onto the input. MAPS smooths its parametrization,
+  // which ours, made of one chart per collapse, does not; this stands for it. Departs from the paper, which applies the
+  // Loop scheme in the parameter domain.
+  int relaxation_rounds = 12;
+};
+
+// Every vertex of the subdivided base at the point of the input that the parametrization puts at its dyadic barycentric coordinates,
+// then relaxed along the input. Vertices on the border stay.
+SemiRegularMesh MapsRemesh(const InputSurface& surface, const BaseDomain& domain, const MapsOptions& options = {});
 
 }  // namespace lacerta::baselines
 

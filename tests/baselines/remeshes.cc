@@ -30,7 +30,9 @@ StatusOr<Remeshes> MakeRemeshes(const TriangleMesh& input, uint32_t num_base_ver
   result.normal = Pierce(surface, domain, positions, piercing);
   result.fitted = result.normal;
   FitToInput(surface, SurfaceFitOptions(), &result.fitted);
-  result.maps = MapsRemesh(surface, domain, num_levels);
+  MapsOptions maps;
+  maps.num_levels = num_levels;
+  result.maps = MapsRemesh(surface, domain, maps);
   return result;
 }
 
