@@ -8,7 +8,8 @@ namespace {
 
 class ButterflyTransform : public Transform {
  public:
-  ButterflyTransform(uint32_t num_base_vertices, const std::vector<Triangle>& base_triangles, std::vector<Topology> topologies)
+  ButterflyTransform(uint32_t num_base_vertices, const std::vector<Triangle>& base_triangles,
+                     std::vector<Topology> topologies)
       : num_base_vertices_(num_base_vertices),
         base_triangles_(base_triangles),
         topologies_(std::move(topologies)),
@@ -17,7 +18,8 @@ class ButterflyTransform : public Transform {
 
   StatusOr<Decomposition> Analyze(const std::vector<Vec3f>& positions) const override {
     Decomposition result;
-    LACERTA_ASSIGN_OR_RETURN(result.levels, lacerta::Analyze({base_triangles_, num_base_vertices_, num_levels(), positions}));
+    LACERTA_ASSIGN_OR_RETURN(result.levels,
+                             lacerta::Analyze({base_triangles_, num_base_vertices_, num_levels(), positions}));
     result.base.assign(positions.begin(), positions.begin() + num_base_vertices_);
     return result;
   }
@@ -28,7 +30,8 @@ class ButterflyTransform : public Transform {
       const Topology& t = topologies_[level];
       std::vector<Vec3f> midpoints = PredictMidpoints(t, stencils_, positions);
       const std::vector<LocalFrame> frames = ComputeLocalFrames(t, positions, midpoints);
-      for (uint32_t e = 0; e < t.num_edges(); ++e) midpoints[e] += frames[e].ToWorld(decomposition.levels[level].detail[e]);
+      for (uint32_t e = 0; e < t.num_edges(); ++e)
+        midpoints[e] += frames[e].ToWorld(decomposition.levels[level].detail[e]);
       positions.insert(positions.end(), midpoints.begin(), midpoints.end());
     }
     return positions;
@@ -49,7 +52,9 @@ class ButterflyTransform : public Transform {
 
 }  // namespace
 
-StatusOr<std::unique_ptr<Transform>> MakeButterflyTransform(uint32_t num_base_vertices, const std::vector<Triangle>& base_triangles, int num_levels) {
+StatusOr<std::unique_ptr<Transform>> MakeButterflyTransform(uint32_t num_base_vertices,
+                                                            const std::vector<Triangle>& base_triangles,
+                                                            int num_levels) {
   LACERTA_ASSIGN_OR_RETURN(Topology topology, BuildTopology(num_base_vertices, base_triangles));
   std::vector<Topology> topologies = {std::move(topology)};
   while (static_cast<int>(topologies.size()) < num_levels) topologies.push_back(Refine(topologies.back()));

@@ -62,8 +62,10 @@ TEST_F(CodersTest, SmallerTangentialScalesSaveBytes) {
 
 TEST_F(CodersTest, BadOptionsAreRefused) {
   const Decomposition parts = butterfly->Analyze(normal).value();
-  EXPECT_EQ(CodeWithZerotrees(remeshes.base, *butterfly, parts, {0.0, 1.0}).status().code(), StatusCode::kInvalidArgument);
-  EXPECT_EQ(CodeWithZerotrees(remeshes.base, *butterfly, parts, {0.1, -1.0}).status().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(CodeWithZerotrees(remeshes.base, *butterfly, parts, {0.0, 1.0}).status().code(),
+            StatusCode::kInvalidArgument);
+  EXPECT_EQ(CodeWithZerotrees(remeshes.base, *butterfly, parts, {0.1, -1.0}).status().code(),
+            StatusCode::kInvalidArgument);
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ EdgeTrees BuildEdgeTrees(Span<const Topology> topologies) {
         children[1] = finer + 2 * e + 1;
         for (int side = 0; side < 2; ++side) {
           const uint32_t f = t.edge_faces[e][side];
-          if (f != kNone) children[2 + side] = finer + 2 * t.num_edges() + 3 * f + static_cast<uint32_t>(EdgeCorner(t, f, e));
+          if (f != kNone)
+            children[2 + side] = finer + 2 * t.num_edges() + 3 * f + static_cast<uint32_t>(EdgeCorner(t, f, e));
         }
       }
       trees.children.push_back(children);

@@ -1,6 +1,6 @@
-// Hierarchical trees over the details of a semi-regular mesh [Khodakovsky, Schroeder, Sweldens 2000, Sec. 3.2]: one detail per edge of
-// the level that is split, so the trees are rooted at the edges of the base and every edge has four children: its two halves
-// and, in each of its faces, the inner edge parallel to it. On the border three.
+// Hierarchical trees over the details of a semi-regular mesh [Khodakovsky, Schroeder, Sweldens 2000, Sec. 3.2]: one
+// detail per edge of the level that is split, so the trees are rooted at the edges of the base and every edge has four
+// children: its two halves and, in each of its faces, the inner edge parallel to it. On the border three.
 #ifndef LACERTA_TESTS_BASELINES_EDGE_TREES_H_
 #define LACERTA_TESTS_BASELINES_EDGE_TREES_H_
 

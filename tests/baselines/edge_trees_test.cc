@@ -32,7 +32,8 @@ TEST(EdgeTrees, EveryFinerEdgeHasOneParent) {
       }
     }
     EXPECT_EQ(std::count(parents.begin(), parents.begin() + trees.first[1], 0), levels[0].num_edges());
-    EXPECT_EQ(std::count(parents.begin() + trees.first[1], parents.end(), 1), levels[1].num_edges() + levels[2].num_edges());
+    EXPECT_EQ(std::count(parents.begin() + trees.first[1], parents.end(), 1),
+              levels[1].num_edges() + levels[2].num_edges());
   }
 }
 

@@ -8,7 +8,8 @@ namespace lacerta::baselines {
 namespace {
 
 // Frames of the new vertices of the subdivided, smoothed surface.
-std::vector<LocalFrame> FramesOf(const Topology& t, const LoopWavelet& wavelet, const std::vector<Vec3f>& control_points) {
+std::vector<LocalFrame> FramesOf(const Topology& t, const LoopWavelet& wavelet,
+                                 const std::vector<Vec3f>& control_points) {
   std::vector<Vec3f> fine = wavelet.Subdivide(control_points);
   const std::vector<Vec3f> midpoints(fine.begin() + t.num_vertices, fine.end());
   fine.resize(t.num_vertices);
@@ -51,10 +52,13 @@ class LoopTransform : public Transform {
     return positions;
   }
 
-  // By noise of one standard deviation on all coefficients of a level, alone: the operator is linear without the frames.
+  // By noise of one standard deviation on all coefficients of a level, alone: the operator is linear without the
+  // frames.
   Status ProbeEnergies() {
     uint64_t state = 1;
-    const auto sign = [&state] { return (state = state * 6364136223846793005u + 1442695040888963407u) >> 63 != 0 ? 1.0f : -1.0f; };
+    const auto sign = [&state] {
+      return (state = state * 6364136223846793005u + 1442695040888963407u) >> 63 != 0 ? 1.0f : -1.0f;
+    };
     for (size_t level = 0; level <= wavelets_.size(); ++level) {
       const size_t count = level == 0 ? topologies_[0].num_vertices : topologies_[level - 1].num_edges();
       std::vector<Vec3f> field, noise;
@@ -62,7 +66,8 @@ class LoopTransform : public Transform {
       if (level == 0) {
         field = noise;
       } else {
-        LACERTA_ASSIGN_OR_RETURN(field, wavelets_[level - 1].Synthesize({std::vector<Vec3f>(topologies_[level - 1].num_vertices), noise}));
+        LACERTA_ASSIGN_OR_RETURN(
+            field, wavelets_[level - 1].Synthesize({std::vector<Vec3f>(topologies_[level - 1].num_vertices), noise}));
       }
       for (size_t finer = level; finer < wavelets_.size(); ++finer) field = wavelets_[finer].Subdivide(field);
       double sum = 0;
@@ -83,7 +88,8 @@ class LoopTransform : public Transform {
 
 }  // namespace
 
-StatusOr<std::unique_ptr<Transform>> MakeLoopTransform(uint32_t num_base_vertices, const std::vector<Triangle>& base_triangles, int num_levels) {
+StatusOr<std::unique_ptr<Transform>> MakeLoopTransform(uint32_t num_base_vertices,
+                                                       const std::vector<Triangle>& base_triangles, int num_levels) {
   LACERTA_ASSIGN_OR_RETURN(Topology topology, BuildTopology(num_base_vertices, base_triangles));
   std::vector<Topology> topologies = {std::move(topology)};
   while (static_cast<int>(topologies.size()) < num_levels) topologies.push_back(Refine(topologies.back()));

@@ -1,7 +1,6 @@
 #include "baselines/loop_wavelet.h"
 
 #include <Eigen/IterativeLinearSolvers>
-
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +29,8 @@ void Append(const Eigen::MatrixX3d& m, std::vector<Vec3f>* values) {
 
 }  // namespace
 
-LoopWavelet::LoopWavelet(const Topology& t) : old_(t.num_vertices, t.num_vertices), new_(t.num_edges(), t.num_vertices) {
+LoopWavelet::LoopWavelet(const Topology& t)
+    : old_(t.num_vertices, t.num_vertices), new_(t.num_edges(), t.num_vertices) {
   std::vector<Eigen::Triplet<double>> old_entries, new_entries;
   std::vector<double> own(t.num_vertices, 1.0);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
@@ -56,7 +56,8 @@ LoopWavelet::LoopWavelet(const Topology& t) : old_(t.num_vertices, t.num_vertice
 
 StatusOr<LoopWavelet::Bands> LoopWavelet::Analyze(const std::vector<Vec3f>& fine) const {
   const auto num_old = static_cast<size_t>(old_.rows());
-  const Eigen::MatrixX3d x_old = ToMatrix(fine.data(), num_old), x_new = ToMatrix(fine.data() + num_old, fine.size() - num_old);
+  const Eigen::MatrixX3d x_old = ToMatrix(fine.data(), num_old),
+                         x_new = ToMatrix(fine.data() + num_old, fine.size() - num_old);
   const Matrix normal = Matrix(old_transposed_ * old_) + Matrix(new_transposed_ * new_);
   Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper> solver(normal);
   solver.setTolerance(kTolerance);

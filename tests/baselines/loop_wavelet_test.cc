@@ -11,7 +11,9 @@
 namespace lacerta::baselines {
 namespace {
 
-Topology TopologyOf(const TriangleMesh& mesh) { return BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles).value(); }
+Topology TopologyOf(const TriangleMesh& mesh) {
+  return BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles).value();
+}
 
 double LargestDistance(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
   double largest = 0;
@@ -25,8 +27,8 @@ Vec3f Wave(uint32_t i) {
   return Vec3Cast<float>(Vec3d{std::sin(2 * x), std::cos(5 * x), std::sin(x * x)});
 }
 
-// [Loop 1987]: an inner vertex of valence 6 keeps 10/16 and gives 1/16 to each neighbor, of valence 3 7/16 and 3/16; new
-// vertices take 3/8, 3/8, 1/8, 1/8.
+// [Loop 1987]: an inner vertex of valence 6 keeps 10/16 and gives 1/16 to each neighbor, of valence 3 7/16 and 3/16;
+// new vertices take 3/8, 3/8, 1/8, 1/8.
 TEST(LoopWavelet, HasKnownStencils) {
   const TriangleMesh torus = shapes::Torus(6, 5);  // all valences are 6
   const Topology t = TopologyOf(torus);
@@ -45,7 +47,8 @@ TEST(LoopWavelet, HasKnownStencils) {
   }
   EXPECT_FLOAT_EQ(static_cast<float>(sum), 6 * 0.375f + 6 * 0.125f);
 
-  const TriangleMesh tetrahedron = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  const TriangleMesh tetrahedron = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
   const std::vector<Vec3f> corner = LoopWavelet(TopologyOf(tetrahedron)).Subdivide({{1, 0, 0}, {}, {}, {}});
   EXPECT_FLOAT_EQ(corner[0].x, 7.0f / 16);
   EXPECT_FLOAT_EQ(corner[1].x, 3.0f / 16);
@@ -107,12 +110,15 @@ TEST(Transform, SynthesisUndoesAnalysisOverLevels) {
     }
   }
   for (const bool loop : {false, true}) {
-    const auto transform = (loop ? MakeLoopTransform(12, base.triangles, kLevels) : MakeButterflyTransform(12, base.triangles, kLevels)).value();
+    const auto transform =
+        (loop ? MakeLoopTransform(12, base.triangles, kLevels) : MakeButterflyTransform(12, base.triangles, kLevels))
+            .value();
     const Decomposition parts = transform->Analyze(positions).value();
     ASSERT_EQ(parts.levels.size(), size_t{kLevels});
     ASSERT_EQ(parts.base.size(), 12u);
     EXPECT_LT(LargestDistance(transform->Synthesize(parts).value(), positions), 1e-5) << loop;
-    // Energies grow with the vertices that a coefficient moves; the finest Loop wavelets have a large part at old vertices.
+    // Energies grow with the vertices that a coefficient moves; the finest Loop wavelets have a large part at old
+    // vertices.
     ASSERT_EQ(transform->energies().size(), size_t{kLevels} + 1);
     for (int level = 1; level < kLevels; ++level) {
       const double growth = transform->energies()[level] / transform->energies()[level + 1];

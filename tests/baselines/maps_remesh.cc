@@ -42,7 +42,8 @@ SemiRegularMesh MapsRemesh(const InputSurface& surface, const BaseDomain& domain
   std::vector<SitePoint> sites(domain.num_vertices());
   const std::vector<Vec3f> base = domain.PositionsOn(surface.mesh());
   for (uint32_t v = 0; v < base.size(); ++v) sites[v] = {base[v], surface.vertex_normal(domain.input_vertex(v))};
-  // By face, the corners in coordinates of the base face it lies in. Faces are refined in the order of common/subdivision.h.
+  // By face, the corners in coordinates of the base face it lies in. Faces are refined in the order of
+  // common/subdivision.h.
   using Corners = std::array<Vec3d, 3>;
   std::vector<Corners> corners(domain.triangles().size(), Corners{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}});
   Topology topology = domain.topology();

@@ -12,13 +12,14 @@
 namespace lacerta::baselines {
 
 struct Remeshes {
-  CodedBase base;         // whose order of vertices and triangles all of them have
-  NormalMesh normal;      // pierced [Guskov et al. 2000], without fit: vertices lie on the input
-  NormalMesh fitted;      // the same after FitToInput, as the product codes it
-  SemiRegularMesh maps;   // vertices at dyadic points of the parametrization [Lee et al. 1998]
+  CodedBase base;        // whose order of vertices and triangles all of them have
+  NormalMesh normal;     // pierced [Guskov et al. 2000], without fit: vertices lie on the input
+  NormalMesh fitted;     // the same after FitToInput, as the product codes it
+  SemiRegularMesh maps;  // vertices at dyadic points of the parametrization [Lee et al. 1998]
 };
 
-// input: one oriented manifold, cleaned; no creases are looked for. num_base_vertices: of the base, more where decimation cannot go on.
+// input: one oriented manifold, cleaned; no creases are looked for. num_base_vertices: of the base, more where
+// decimation cannot go on.
 StatusOr<Remeshes> MakeRemeshes(const TriangleMesh& input, uint32_t num_base_vertices, int num_levels);
 
 }  // namespace lacerta::baselines

@@ -13,7 +13,8 @@ namespace {
 
 double LargestDistanceTo(const InputSurface& surface, const std::vector<Vec3f>& positions) {
   double largest = 0;
-  for (const Vec3f& p : positions) largest = std::max<double>(largest, std::sqrt(surface.tree().ClosestPoint(p).squared_distance));
+  for (const Vec3f& p : positions)
+    largest = std::max<double>(largest, std::sqrt(surface.tree().ClosestPoint(p).squared_distance));
   return largest;
 }
 
@@ -40,7 +41,8 @@ TEST(MapsRemesh, PutsVerticesOnTheInputAndRelaxationEvensThem) {
   const BaseDomain domain(history, history.num_collapses());
   const InputSurface surface(input, topology);
   const SemiRegularMesh raw = MapsRemesh(surface, domain, {3, 0}), relaxed = MapsRemesh(surface, domain, {3, 12});
-  const LevelCounts counts = SubdividedCounts({domain.num_vertices(), domain.topology().num_edges(), domain.topology().num_faces()}, 3);
+  const LevelCounts counts =
+      SubdividedCounts({domain.num_vertices(), domain.topology().num_edges(), domain.topology().num_faces()}, 3);
   for (const SemiRegularMesh& mesh : {raw, relaxed}) {
     EXPECT_EQ(mesh.positions.size(), counts.vertices);
     EXPECT_LT(LargestDistanceTo(surface, mesh.positions), 1e-5);

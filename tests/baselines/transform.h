@@ -34,10 +34,13 @@ class Transform {
 };
 
 // The unlifted butterfly transform [Khodakovsky, Guskov 2002]: that of the product.
-StatusOr<std::unique_ptr<Transform>> MakeButterflyTransform(uint32_t num_base_vertices, const std::vector<Triangle>& base_triangles, int num_levels);
+StatusOr<std::unique_ptr<Transform>> MakeButterflyTransform(uint32_t num_base_vertices,
+                                                            const std::vector<Triangle>& base_triangles,
+                                                            int num_levels);
 
 // Loop wavelets after [Khodakovsky, Schroeder, Sweldens 2000, Sec. 3.1]; see loop_wavelet.h.
-StatusOr<std::unique_ptr<Transform>> MakeLoopTransform(uint32_t num_base_vertices, const std::vector<Triangle>& base_triangles, int num_levels);
+StatusOr<std::unique_ptr<Transform>> MakeLoopTransform(uint32_t num_base_vertices,
+                                                       const std::vector<Triangle>& base_triangles, int num_levels);
 
 }  // namespace lacerta::baselines
 

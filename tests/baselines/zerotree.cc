@@ -42,7 +42,8 @@ int NumPlanes(const std::vector<int32_t>& values) {
 // The state of one set, the same on both sides.
 class SetCoder {
  public:
-  SetCoder(const EdgeTrees& trees, int num_planes) : trees_(trees), num_planes_(num_planes), models_(trees.num_levels()) {
+  SetCoder(const EdgeTrees& trees, int num_planes)
+      : trees_(trees), num_planes_(num_planes), models_(trees.num_levels()) {
     known_.values.assign(trees.num_nodes(), 0);
     known_.unknown_bits.assign(trees.num_nodes(), static_cast<uint8_t>(num_planes));
     visible_.assign(trees.num_nodes(), 0);
@@ -52,10 +53,11 @@ class SetCoder {
   int num_planes() const { return num_planes_; }
   const ZerotreePrefix& known() const { return known_; }
 
-  // Codes one plane. truth, values: what is coded; null where decisions come from a decoder. Returns whether `budget`, which
-  // counts down, sufficed.
+  // Codes one plane. truth, values: what is coded; null where decisions come from a decoder. Returns whether `budget`,
+  // which counts down, sufficed.
   template <typename Coder>
-  bool CodePlane(int plane, const SetMaxima* truth, const std::vector<int32_t>* values, Coder* coder, uint64_t* budget) {
+  bool CodePlane(int plane, const SetMaxima* truth, const std::vector<int32_t>* values, Coder* coder,
+                 uint64_t* budget) {
     for (int level = 0; level < trees_.num_levels(); ++level) {
       for (uint32_t n = trees_.first[level]; n < trees_.first[level + 1]; ++n) {
         if ((visible_[n] & kNode) != 0) {
@@ -136,7 +138,8 @@ Bytes EncodeZerotrees(const EdgeTrees& trees, const std::vector<std::vector<int3
   bool going_on = true;
   for (int plane = most_planes - 1; plane >= 0 && going_on; --plane) {
     for (size_t i = 0; i < sets.size() && going_on; ++i) {
-      if (plane < coders[i].num_planes()) going_on = coders[i].CodePlane(plane, &truth[i], &sets[i], &encoder, &num_decisions);
+      if (plane < coders[i].num_planes())
+        going_on = coders[i].CodePlane(plane, &truth[i], &sets[i], &encoder, &num_decisions);
     }
   }
   const Bytes payload = encoder.Finish();
@@ -144,7 +147,8 @@ Bytes EncodeZerotrees(const EdgeTrees& trees, const std::vector<std::vector<int3
   return stream;
 }
 
-std::vector<ZerotreePrefix> DecodeZerotrees(const EdgeTrees& trees, size_t num_sets, Span<const uint8_t> stream, uint64_t num_decisions) {
+std::vector<ZerotreePrefix> DecodeZerotrees(const EdgeTrees& trees, size_t num_sets, Span<const uint8_t> stream,
+                                            uint64_t num_decisions) {
   std::vector<SetCoder> coders;
   int most_planes = 0;
   for (size_t i = 0; i < num_sets; ++i) {
@@ -155,7 +159,8 @@ std::vector<ZerotreePrefix> DecodeZerotrees(const EdgeTrees& trees, size_t num_s
   bool going_on = true;
   for (int plane = most_planes - 1; plane >= 0 && going_on; --plane) {
     for (size_t i = 0; i < num_sets && going_on; ++i) {
-      if (plane < coders[i].num_planes()) going_on = coders[i].CodePlane(plane, nullptr, nullptr, &decoder, &num_decisions);
+      if (plane < coders[i].num_planes())
+        going_on = coders[i].CodePlane(plane, nullptr, nullptr, &decoder, &num_decisions);
     }
   }
   std::vector<ZerotreePrefix> known;

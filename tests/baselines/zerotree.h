@@ -1,13 +1,13 @@
-// Embedded coding of bit planes with zerotrees, the coefficient coder of [Khodakovsky, Schroeder, Sweldens 2000] and, over the details of
-// normal meshes, of [Khodakovsky, Guskov 2002]: set partitioning in hierarchical trees [Said, Pearlman 1996], every decision
-// through an adaptive arithmetic coder.
+// Embedded coding of bit planes with zerotrees, the coefficient coder of [Khodakovsky, Schroeder, Sweldens 2000] and,
+// over the details of normal meshes, of [Khodakovsky, Guskov 2002]: set partitioning in hierarchical trees [Said,
+// Pearlman 1996], every decision through an adaptive arithmetic coder.
 //
-// A plane asks, from coarse nodes to fine ones: of a node that was zero so far, whether it is still; of a set of descendants that was all zero
-// so far, whether it is still. Sets are D(n), all descendants of n, and, once D(n) has opened, L(n), those without its children; the sets D of the
-// children exist only once L(n) has opened.
+// A plane asks, from coarse nodes to fine ones: of a node that was zero so far, whether it is still; of a set of
+// descendants that was all zero so far, whether it is still. Sets are D(n), all descendants of n, and, once D(n) has
+// opened, L(n), those without its children; the sets D of the children exist only once L(n) has opened.
 //
-// Departs from the papers: nodes are visited level by level instead of by lists, with the same questions in each plane; signs are not modelled, and
-// the models know the level.
+// Departs from the papers: nodes are visited level by level instead of by lists, with the same questions in each plane;
+// signs are not modelled, and the models know the level.
 #ifndef LACERTA_TESTS_BASELINES_ZEROTREE_H_
 #define LACERTA_TESTS_BASELINES_ZEROTREE_H_
 
@@ -20,7 +20,8 @@
 
 namespace lacerta::baselines {
 
-// What a decoder knows of one set after any number of decisions: |coefficient| is in [|value|, |value| + 2^unknown_bits).
+// What a decoder knows of one set after any number of decisions: |coefficient| is in [|value|, |value| +
+// 2^unknown_bits).
 struct ZerotreePrefix {
   std::vector<int32_t> values;        // #nodes, with sign
   std::vector<uint8_t> unknown_bits;  // #nodes

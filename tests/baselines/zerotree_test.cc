@@ -23,7 +23,8 @@ std::vector<int32_t> Details(const EdgeTrees& trees, double scale, uint32_t seed
   std::vector<int32_t> values;
   for (int level = 0; level < trees.num_levels(); ++level, scale /= 3) {
     std::exponential_distribution<double> magnitude(1 / scale);
-    while (values.size() < trees.first[level + 1]) values.push_back(static_cast<int32_t>(magnitude(random)) * (random() % 2 ? 1 : -1));
+    while (values.size() < trees.first[level + 1])
+      values.push_back(static_cast<int32_t>(magnitude(random)) * (random() % 2 ? 1 : -1));
   }
   return values;
 }
