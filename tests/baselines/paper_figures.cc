@@ -122,7 +122,7 @@ Status Compare(const std::string& path, const Options& options) {
                               options.coder);
   const double diagonal = meter.diagonal();
   const double first_lambda = 3e-9 * diagonal * diagonal, lambda_ratio = std::pow(10.0, -0.4);
-  const double first_threshold = 2e-2 * diagonal, threshold_ratio = std::sqrt(0.5);
+  const double first_threshold = 8e-2 * diagonal, threshold_ratio = std::sqrt(0.5);
 
   // On the normal mesh, and on the fitted one for the default mode, which is made for that.
   const std::vector<Vec3f>& normal = remeshes.normal.mesh.positions;
