@@ -3,6 +3,7 @@
 #   build     what the libraries, the command and the tests need
 #   demo      a test mesh and stock Draco's command line, to compare with
 #   picture   an off-screen viewer for the demo's picture
+#   plot      gnuplot, for the figures in docs/results
 #   fuzz      clang with libFuzzer
 #   validate  Node.js for the glTF validator
 #   lint      clang-format and clang-tidy
@@ -16,10 +17,11 @@ packages_of() {
       nlohmann-json3-dev libcli11-dev libgtest-dev libgmock-dev libbenchmark-dev python3 ;;
     demo) echo libcgal-demo draco python3 ;;
     picture) echo f3d xvfb xauth imagemagick fonts-dejavu-core ;;
+    plot) echo gnuplot-nox fonts-dejavu-core ;;
     fuzz) echo clang-14 libclang-rt-14-dev ;;
     validate) echo nodejs npm ;;
     lint) echo clang-format-14 clang-tidy-14 ;;
-    *) echo "unknown package set '$1'; $0 knows build, demo, picture, fuzz, validate, lint" >&2; return 2 ;;
+    *) echo "unknown package set '$1'; $0 knows build, demo, picture, plot, fuzz, validate, lint" >&2; return 2 ;;
   esac
 }
 

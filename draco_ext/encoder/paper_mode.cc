@@ -5,7 +5,6 @@
 
 #include "encoder/allocation/bit_allocation.h"
 #include "encoder/allocation/subband_weights.h"
-#include "encoder/analysis.h"
 #include "encoder/quantizer.h"
 
 namespace lacerta {
@@ -26,8 +25,12 @@ float LatticeStep(const std::vector<SetStatistics>& sets, const BitAllocation& a
 
 StatusOr<CodedSurface> CodeByModel(const SemiRegularMesh& mesh, double lambda) {
   LACERTA_ASSIGN_OR_RETURN(const std::vector<LevelCoefficients> levels, Analyze(mesh));
-  const std::vector<SetStatistics> sets =
-      Describe(mesh.positions, mesh.num_base_vertices, levels, RegularEnergies(mesh.num_levels), DescribeOptions{0.0});
+  return CodeByModel(mesh, levels, RegularEnergies(mesh.num_levels), lambda);
+}
+
+StatusOr<CodedSurface> CodeByModel(const SemiRegularMesh& mesh, const std::vector<LevelCoefficients>& levels,
+                                   const std::vector<double>& energies, double lambda) {
+  const std::vector<SetStatistics> sets = Describe(mesh.positions, mesh.num_base_vertices, levels, energies, DescribeOptions{0.0});
   const double num_samples = 3.0 * static_cast<double>(mesh.positions.size());
   LACERTA_ASSIGN_OR_RETURN(const BitAllocation allocation, AllocateForSlope(sets, lambda * num_samples));
 

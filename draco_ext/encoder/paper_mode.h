@@ -3,6 +3,9 @@
 #ifndef LACERTA_ENCODER_PAPER_MODE_H_
 #define LACERTA_ENCODER_PAPER_MODE_H_
 
+#include <vector>
+
+#include "encoder/analysis.h"
 #include "encoder/coefficient_descent.h"
 #include "lacerta/decoder.h"
 #include "lacerta/mesh.h"
@@ -13,6 +16,11 @@ namespace lacerta {
 // Codes `mesh` at the slope lambda > 0 of the model's rate-distortion curve: squared model units of mean squared vertex error
 // per bit of the stream. Fails as Analyze and BitAllocator::Create do.
 StatusOr<CodedSurface> CodeByModel(const SemiRegularMesh& mesh, double lambda);
+
+// The same for what any transform made of a mesh. coefficients: as a mesh, but only the first num_base_vertices positions
+// matter, which are those of the base; levels, energies: as for Describe.
+StatusOr<CodedSurface> CodeByModel(const SemiRegularMesh& coefficients, const std::vector<LevelCoefficients>& levels,
+                                   const std::vector<double>& energies, double lambda);
 
 }  // namespace lacerta
 
