@@ -25,7 +25,7 @@ struct CodedSurface {
 
 struct DescentOptions {
   double lambda = 0.0;   // squared model units per bit
-  int passes = 2;
+  int passes = 3;
   bool move_base = true;  // the lattice points of the base may move too
 };
 

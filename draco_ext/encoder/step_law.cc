@@ -8,8 +8,8 @@
 namespace lacerta {
 namespace {
 
-constexpr double kSlopeShare = 0.15;       // lambda / (step^2 / N) where detail ends
-constexpr double kStepRatio = 1.4;         // between the steps of two levels below that
+constexpr double kSlopeShare = 0.12;       // lambda / (step^2 / N) where detail ends
+constexpr double kStepRatio = 1.2;         // between the steps of two levels below that
 constexpr double kActiveScale = 0.5;       // a level carries detail when its scale exceeds this share of its step
 constexpr double kTangentialRatio = 2.0;   // of the tangential to the normal step
 constexpr double kBaseVertices = 2.5e4;    // the base lattice is as fine as the steps of a level of so many vertices
