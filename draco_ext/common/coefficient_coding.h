@@ -24,12 +24,9 @@ struct Forecast {
   int32_t sign = 0;        // of the parent coefficient: -1, 0, 1
 };
 
-// Probabilities of coefficients other than zero to begin with, in 1/65536: most tangential ones of a normal mesh are zero.
-inline constexpr uint32_t kNormalNonzero = 32768, kTangentialNonzero = 13107;
-
 // What was coded before the level at hand: models, and forecasts for its edges (empty: nothing was coded one level up).
 struct CodingState {
-  SetModels normal{kNormalNonzero}, tangential1{kTangentialNonzero}, tangential2{kTangentialNonzero};
+  SetModels normal{kNormalPriors}, tangential1{kTangentialPriors}, tangential2{kTangentialPriors};
   std::vector<Forecast> normal_forecasts, tangential_forecasts;  // #E each
   LevelSteps coarser_steps;
 };

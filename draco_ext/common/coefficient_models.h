@@ -3,17 +3,17 @@
 #ifndef LACERTA_COMMON_COEFFICIENT_MODELS_H_
 #define LACERTA_COMMON_COEFFICIENT_MODELS_H_
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include "common/bit_model.h"
+#include "common/coefficient_priors.h"
 
 namespace lacerta {
 
-inline constexpr int kNumActivityClasses = 14;  // of the expected magnitude
 inline constexpr int kNumCompanionClasses = 6;
 inline constexpr int kCurveCompanion = 3;  // added to the class of an edge on a curve
-inline constexpr int kNumSignClasses = 8;
 inline constexpr int kUnaryLength = 14;  // magnitudes up to this one are coded in unary
 inline constexpr int kMaxExponent = 19;  // the rest, m - 14, is below 2^20
 
@@ -36,9 +36,13 @@ struct CoefficientContext {
 
 // Models of one set. They live on from level to level.
 struct SetModels {
-  // nonzero_to_begin: the probability of a coefficient other than zero to begin with, in 1/65536.
-  explicit SetModels(uint32_t nonzero_to_begin) {
-    for (auto& models : nonzero) models.fill(BitModel(nonzero_to_begin));
+  explicit SetModels(const SetPriors& priors) {
+    const auto begin = [](uint8_t probability) { return BitModel(uint32_t{probability} << 8, kPriorBits); };
+    for (int a = 0; a < kNumActivityClasses; ++a) {
+      for (int c = 0; c < kNumCompanionClasses; ++c) nonzero[a][c] = begin(priors.nonzero[a][c % SetPriors::kNumCompanions]);
+      for (int m = 0; m < kUnaryLength; ++m) larger[a][m] = begin(priors.larger[a][std::min(m, SetPriors::kNumSteps - 1)]);
+    }
+    for (int g = 0; g < kNumSignClasses; ++g) unexpected_sign[g] = begin(priors.unexpected_sign[g]);
   }
 
   std::array<std::array<BitModel, kNumCompanionClasses>, kNumActivityClasses> nonzero;

@@ -244,11 +244,29 @@ def tagged_level(base, payload):
 
 # --- Binarization ---
 
+# Initial probabilities in 1/256: nonzero[a][c mod 3], unexpected_sign[g], larger[a][min(m - 1, 3)].
+NORMAL_PRIORS = (
+    ((11, 11, 11), (9, 9, 9), (23, 23, 23), (56, 56, 56), (99, 99, 99), (145, 145, 145), (176, 176, 176),
+     (202, 202, 202), (221, 221, 221), (233, 233, 233), (241, 241, 241), (246, 246, 246), (250, 250, 250), (252, 252, 252)),
+    (132, 70, 117, 83, 39, 96, 88, 29),
+    ((139, 180, 203, 213), (28, 29, 70, 170), (24, 45, 92, 115), (32, 49, 76, 134), (47, 58, 74, 129), (72, 74, 88, 136), (109, 98, 97, 124),
+     (155, 134, 131, 138), (189, 176, 168, 164), (211, 207, 203, 194), (227, 226, 224, 216), (239, 238, 236, 233), (246, 245, 245, 243), (251, 250, 248, 248)))
+TANGENTIAL_PRIORS = (
+    ((2, 5, 16), (3, 5, 11), (8, 10, 23), (12, 17, 34), (17, 24, 46), (22, 25, 45), (27, 28, 57),
+     (29, 30, 59), (38, 33, 70), (34, 37, 70), (46, 50, 85), (67, 62, 118), (67, 62, 118), (67, 62, 118)),
+    (128, 128, 128, 128, 128, 128, 128, 128),
+    ((138, 182, 178, 207), (90, 145, 148, 203), (88, 128, 153, 189), (101, 139, 160, 197), (112, 144, 148, 185), (134, 155, 147, 190), (161, 158, 168, 188),
+     (181, 177, 165, 177), (201, 185, 197, 188), (202, 212, 207, 205), (202, 212, 207, 205), (202, 212, 207, 205), (202, 212, 207, 205), (202, 212, 207, 205)))
+
+
 class SetModels:
-    def __init__(self, initial):
-        self.nonzero = [[Model(initial) for _ in range(6)] for _ in range(14)]
-        self.unexpected_sign = [Model() for _ in range(8)]
-        self.larger = [[Model() for _ in range(14)] for _ in range(14)]
+    def __init__(self, priors):
+        def begin(probability):
+            return Model(probability << 8, 16)
+        nonzero, unexpected_sign, larger = priors
+        self.nonzero = [[begin(row[c % 3]) for c in range(6)] for row in nonzero]
+        self.unexpected_sign = [begin(p) for p in unexpected_sign]
+        self.larger = [[begin(row[min(m, 3)]) for m in range(14)] for row in larger]
         self.longer = [Model() for _ in range(19)]
         self.second_bit = [Model() for _ in range(19)]
 
@@ -334,7 +352,7 @@ def decode_set(level, parents, decode_edge):
 
 class CoefficientDecoder:
     def __init__(self):
-        self.models = [SetModels(32768), SetModels(13107), SetModels(13107)]
+        self.models = [SetModels(NORMAL_PRIORS), SetModels(TANGENTIAL_PRIORS), SetModels(TANGENTIAL_PRIORS)]
         self.coarse = {}  # set -> (level tables, values, step bits)
 
     def decode(self, level, sets, payload):
