@@ -28,6 +28,8 @@ constexpr double kPsnrAim = 0.06, kBytesAim = 0.005;
 constexpr int kScoreTries = 2;
 constexpr double kNearEnough = 0.4;  // dB: typical slopes will do
 constexpr int kMeetTries = 16, kEstimatedTries = 6;
+// Passes of the descent: scores compare candidates, which a few tell; the stream that is kept is worth more.
+constexpr int kScorePasses = 2, kMeetPasses = 5;
 
 }  // namespace
 
@@ -46,7 +48,7 @@ double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogByte
 
 StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda) {
   Attempt attempt;
-  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code(std::exp(kept_steps_.value_or(log_lambda)), std::exp(log_lambda), mode_));
+  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({std::exp(kept_steps_.value_or(log_lambda)), std::exp(log_lambda), passes_}, mode_));
   if (!offset_) {
     constexpr uint64_t kRoughSamples = 50'000;
     offset_ = MeasurePsnr(attempt, kRoughSamples) - EstimatePsnr(attempt.stream, remesh_psnr_);
@@ -116,6 +118,7 @@ bool CandidateSearch::CannotReach() const {
 }
 
 StatusOr<double> CandidateSearch::Score() {
+  passes_ = kScorePasses;
   double score = std::numeric_limits<double>::infinity();
   double least_miss = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kScoreTries; ++i) {
@@ -133,6 +136,8 @@ StatusOr<double> CandidateSearch::Score() {
 }
 
 StatusOr<MeasuredStream> CandidateSearch::Meet() {
+  passes_ = kMeetPasses;
+  values_.clear();
   constexpr uint64_t kSamples = 200'000;
   const double low = target_.is_rate ? -kBytesSlack : kPsnrMargin, high = target_.is_rate ? 0 : kPsnrSlack;  // beyond the target
   const auto excess = [&](const Attempt& a) { return target_.is_rate ? a.value - std::log(target_.bytes) : a.psnr - target_.psnr; };

@@ -79,6 +79,7 @@ class CandidateSearch {
   const ResolvedTarget target_;
   const EncodeMode mode_;
   double start_;                     // ln(lambda) to begin with
+  int passes_ = 0;                   // of the descent
   std::map<double, double> values_;  // of the attempts so far, by ln(lambda): ln(bytes) at a rate, else estimated dB
   std::optional<double> offset_;     // dB that a measure showed more than the estimate, which hardly depends on lambda
   // Where set, the steps stay at this ln(lambda), and what is tried is the slope of the descent alone.

@@ -118,19 +118,20 @@ BaseMesh NormalMeshCandidate::BaseLattice(const TriangleMesh& base, double step)
   return lattice;
 }
 
-StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(double lambda, double descent_lambda, EncodeMode mode) const {
-  if (mode == EncodeMode::kPaper) return CodeByModel(normal_mesh_.mesh, lambda);
+StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope, EncodeMode mode) const {
+  if (mode == EncodeMode::kPaper) return CodeByModel(normal_mesh_.mesh, slope.lambda);
   const std::vector<Vec3f> base(target_.points.begin(), target_.points.begin() + num_base_vertices());
-  const BaseMesh lattice = BaseLattice({base, normal_mesh_.mesh.base_triangles}, BaseStepForSlope(lambda));
+  const BaseMesh lattice = BaseLattice({base, normal_mesh_.mesh.base_triangles}, BaseStepForSlope(slope.lambda));
   DescentOptions options;
-  options.lambda = descent_lambda;
-  CodedSurface coded = Descend(target_, QuantizeClosedLoop(target_, lattice, StepsForSlope(target_, detail_scales_, lambda)), options);
+  options.lambda = slope.descent_lambda;
+  options.passes = slope.passes;
+  CodedSurface coded = Descend(target_, QuantizeClosedLoop(target_, lattice, StepsForSlope(target_, detail_scales_, slope.lambda)), options);
   if (target_.keeps_vertices) RepairVertices(target_, &coded);
   return coded;
 }
 
-StatusOr<CodedStream> NormalMeshCandidate::Code(double lambda, double descent_lambda, EncodeMode mode) const {
-  LACERTA_ASSIGN_OR_RETURN(const CodedSurface coded, CodeSurface(lambda, descent_lambda, mode));
+StatusOr<CodedStream> NormalMeshCandidate::Code(const CodingSlope& slope, EncodeMode mode) const {
+  LACERTA_ASSIGN_OR_RETURN(const CodedSurface coded, CodeSurface(slope, mode));
   CodedStream stream;
   LACERTA_ASSIGN_OR_RETURN(stream.base, RecodeBaseMesh(base_, coded.base));
   const Span<const Topology> topologies = Span<const Topology>(target_.topologies.data(), coded.levels.size());

@@ -31,6 +31,15 @@ struct CodedStream {
   TriangleMesh FinestMesh() const { return {decoded.positions, triangles}; }
 };
 
+// Where on the rate-distortion curve to code, in squared model units per bit, > 0. Paper mode knows the first slope alone.
+struct CodingSlope {
+  double lambda = 0;  // of the steps
+  // Of the choice of coefficients. Where a level falls silent the steps jump, and bytes and quality with them; a larger slope here
+  // reaches what lies between.
+  double descent_lambda = 0;
+  int passes = DescentOptions().passes;
+};
+
 class NormalMeshCandidate {
  public:
   // The base mesh is the one that the history has at `num_base_vertices` vertices, or its coarsest if that is larger, with the
@@ -43,10 +52,8 @@ class NormalMeshCandidate {
   NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);
 
   // Codes at a slope of the rate-distortion curve: lambda in squared model units per bit, > 0. A larger one gives fewer bytes.
-  StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const { return Code(lambda, lambda, mode); }
-  // The same with the steps of one slope and the choice of coefficients of another, which paper mode ignores. Where a level
-  // falls silent the steps jump, and bytes and quality with them; a larger descent_lambda reaches what lies between.
-  StatusOr<CodedStream> Code(double lambda, double descent_lambda, EncodeMode mode) const;
+  StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const { return Code({lambda, lambda}, mode); }
+  StatusOr<CodedStream> Code(const CodingSlope& slope, EncodeMode mode) const;
 
   uint32_t num_base_vertices() const { return normal_mesh_.mesh.num_base_vertices; }
   const NormalMesh& normal_mesh() const { return normal_mesh_; }
@@ -55,7 +62,7 @@ class NormalMeshCandidate {
 
  private:
   BaseMesh BaseLattice(const TriangleMesh& base, double step) const;
-  StatusOr<CodedSurface> CodeSurface(double lambda, double descent_lambda, EncodeMode mode) const;
+  StatusOr<CodedSurface> CodeSurface(const CodingSlope& slope, EncodeMode mode) const;
   std::vector<Triangle> FinestTriangles() const;  // in the order of MeshAtLevel
 
   CodedBase base_;  // at a nominal step: fixes the order
