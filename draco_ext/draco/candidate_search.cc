@@ -33,11 +33,15 @@ constexpr int kScorePasses = 2, kMeetPasses = 5;
 
 }  // namespace
 
+double UsualLambda(double psnr, double diagonal) {
+  const double distance = DistanceOfPsnr(psnr, diagonal);
+  return kFirstLambda * distance * distance;
+}
+
 CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double remesh_psnr, const SurfaceDistanceMeter& meter,
                                  const ResolvedTarget& target, EncodeMode mode)
     : candidate_(candidate), remesh_psnr_(remesh_psnr), assumed_psnr_(remesh_psnr), meter_(meter), target_(target), mode_(mode) {
-  const double distance = DistanceOfPsnr(target_.is_rate ? kUsualPsnr : target_.psnr, meter_.diagonal());
-  start_ = std::log(kFirstLambda * distance * distance);
+  start_ = std::log(UsualLambda(target_.is_rate ? kUsualPsnr : target_.psnr, meter_.diagonal()));
 }
 
 double CandidateSearch::Goal() const {

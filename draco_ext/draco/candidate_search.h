@@ -28,6 +28,9 @@ struct MeasuredStream {
   bool meets_target = false;
 };
 
+// The slope of the rate-distortion curve at which streams usually are of that PSNR, squared model units per bit.
+double UsualLambda(double psnr, double diagonal);
+
 // All referenced objects must outlive the search.
 class CandidateSearch {
  public:

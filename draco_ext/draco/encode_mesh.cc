@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "draco/base_shape.h"
 #include "draco/custom_form.h"
 #include "draco/decoded_distance.h"
 #include "draco/rate_control.h"
@@ -16,7 +17,6 @@
 #include "lacerta/codec.h"
 #include "lacerta/decoder.h"
 #include "lacerta/surface_distance.h"
-#include "remesh/decimate.h"
 #include "remesh/input_surface.h"
 #include "remesh/simplify.h"
 #include "remesh/surface_parts.h"
@@ -134,15 +134,14 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, const SurfaceDist
   const SurfaceParts parts = SplitSurface(mesh);
   if (parts.refined.triangles.empty()) return Unsupported("no component has triangles enough to be worth remeshing");
   progress(0.02, "simplifying");
-  // Neither runs in parallel by itself.
+  const InputSurface surface(parts.refined, parts.topology);
+  const double psnr = TypicalPsnr(target, static_cast<double>(mesh.positions.size()));
   std::optional<CollapseHistory> history;
   std::optional<SimplificationSequence> sequence;
-  tbb::parallel_invoke([&] { history.emplace(Decimate(parts.refined, parts.topology, DecimateOptions())); },
+  tbb::parallel_invoke([&] { history.emplace(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), UsualLambda(psnr, meter.diagonal()))); },
                        [&] {
                          if (options.levels == LevelChoice::kWhereTheyPay) sequence.emplace(mesh);
                        });
-  const InputSurface surface(parts.refined, parts.topology);
-  const double psnr = TypicalPsnr(target, static_cast<double>(mesh.positions.size()));
   const StillPart still = PrepareStillPart(parts.still, parts.refined, DistanceOfPsnr(psnr, meter.diagonal()));
   const RefinableSurface refinable{surface, *history, still.mesh};
   LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen, CodeAtTarget(refinable, meter, target, options.mode, options.progress));

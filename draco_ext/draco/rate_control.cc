@@ -25,8 +25,6 @@ int RungOfSize(double size) {
   return std::max(0, static_cast<int>(std::lround(std::log(size / kFirstRung) / std::log(kRungRatio))));
 }
 
-int TypicalRung(double psnr) { return RungOfSize(200 * std::pow(2.0, (psnr - 70) / 6)); }
-
 // Levels that bring a base to at least as many vertices as the input has; chords of the remesh then cost little.
 int LevelsFor(double num_base_vertices, double num_input_vertices) {
   constexpr double kVertexShare = 0.7;
@@ -76,7 +74,7 @@ class Ladder {
   // Scores the rungs around the typical one and goes on until one on either side of the best is known to be much worse, or two to be
   // worse: one alone may be a fluke of its simplification. Returns the most promising rungs, best first; at least one.
   StatusOr<std::vector<int>> FindBest(const std::function<void(double, const char*)>& progress) {
-    const int first = std::clamp(TypicalRung(TypicalPsnr(target_, num_input_)), first_, last_);
+    const int first = std::clamp(RungOfSize(TypicalBase(TypicalPsnr(target_, num_input_))), first_, last_);
     Visit({first - 1, first, first + 1});
     for (;;) {
       if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(rungs_.size())), "choosing the base mesh");
@@ -225,6 +223,8 @@ bool IsBetter(const MeasuredStream& a, const MeasuredStream& b, const ResolvedTa
 }
 
 }  // namespace
+
+double TypicalBase(double psnr) { return 200 * std::pow(2.0, (psnr - 70) / 6); }
 
 double TypicalPsnr(const ResolvedTarget& target, double num_input_vertices) {
   if (!target.is_rate) return target.psnr;

@@ -17,6 +17,9 @@ StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_
 // The PSNR that is asked for, or where a stream of the rate that is asked for usually ends up, dB.
 double TypicalPsnr(const ResolvedTarget& target, double num_input_vertices);
 
+// Vertices of the base that streams of a PSNR have on typical surfaces.
+double TypicalBase(double psnr);
+
 struct ChosenStream {
   MeasuredStream measured;
   double remesh_psnr = 0;   // dB, of the unquantized remesh

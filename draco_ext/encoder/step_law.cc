@@ -14,6 +14,21 @@ constexpr double kActiveScale = 0.5;       // a level carries detail when its sc
 constexpr double kTangentialRatio = 2.0;   // of the tangential to the normal step
 constexpr double kBaseVertices = 2.5e4;    // the base lattice is as fine as the steps of a level of so many vertices
 
+// The details of the edges of level - 1, before quantization: along the normal, or the whole where vertices are kept.
+std::vector<double> DetailLengths(const SurfaceTarget& target, int level) {
+  const Topology& coarse = target.topologies[level - 1];
+  const std::vector<Vec3f> positions(target.points.begin(), target.points.begin() + coarse.num_vertices);
+  const std::vector<Vec3f> predicted = PredictMidpoints(coarse, target.stencils, positions);
+  const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
+  std::vector<double> lengths;
+  for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
+    if (coarse.is_copy(e)) continue;
+    const Vec3f detail = target.points[coarse.num_vertices + e] - predicted[e];
+    lengths.push_back(target.keeps_vertices ? Norm(detail) : Dot(detail, frames[e].normal));
+  }
+  return lengths;
+}
+
 double BalancedStep(double lambda, double num_vertices) { return std::sqrt(lambda * num_vertices / kSlopeShare); }
 
 }  // namespace
@@ -21,20 +36,22 @@ double BalancedStep(double lambda, double num_vertices) { return std::sqrt(lambd
 std::vector<double> DetailScales(const SurfaceTarget& target) {
   std::vector<double> scales;
   for (int level = 1; level <= target.num_levels(); ++level) {
-    const Topology& coarse = target.topologies[level - 1];
-    const std::vector<Vec3f> positions(target.points.begin(), target.points.begin() + coarse.num_vertices);
-    const std::vector<Vec3f> predicted = PredictMidpoints(coarse, target.stencils, positions);
-    const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
     double sum = 0;
-    for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-      if (coarse.is_copy(e)) continue;
-      const Vec3f detail = target.points[coarse.num_vertices + e] - predicted[e];
-      const double scale = target.keeps_vertices ? Norm(detail) : Dot(detail, frames[e].normal);
-      sum += scale * scale;
-    }
-    scales.push_back(std::sqrt(sum / coarse.num_edges()));
+    for (const double length : DetailLengths(target, level)) sum += length * length;
+    scales.push_back(std::sqrt(sum / target.topologies[level - 1].num_edges()));
   }
   return scales;
+}
+
+double EstimateDetailBits(const SurfaceTarget& target, const std::vector<LevelSteps>& steps) {
+  double bits = 0;
+  for (int level = 1; level <= target.num_levels(); ++level) {
+    for (const double length : DetailLengths(target, level)) {
+      const double q = length / steps[level - 1].normal_step;
+      bits += 0.5 * std::log2(1 + q * q);
+    }
+  }
+  return bits;
 }
 
 std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, const std::vector<double>& detail_scales, double lambda) {

@@ -21,6 +21,10 @@ std::vector<double> DetailScales(const SurfaceTarget& target);
 // Steps of all levels. detail_scales: of DetailScales; lambda: squared model units per bit, > 0.
 std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, const std::vector<double>& detail_scales, double lambda);
 
+// About the bits of the normal details at these steps, up to a factor: what Gaussian variables of their size would take. It tells normal
+// meshes of one surface apart without coding them.
+double EstimateDetailBits(const SurfaceTarget& target, const std::vector<LevelSteps>& steps);
+
 // Step of the base lattice, not yet rounded, model units.
 double BaseStepForSlope(double lambda);
 

@@ -263,7 +263,7 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
   const double valence_penalty = 1 + 0.25 * std::max(0.0, valence - 7);
   // The small second term orders flat regions by edge length; relative to the input's scale, it is nothing elsewhere.
   const double edge = SquaredNorm(positions_[u] - positions_[v]);
-  return (q.Evaluate(positions_[u]) + 1e-6 * edge * length_scale_) * worst_aspect * valence_penalty * coverage * coverage *
+  return (q.Evaluate(positions_[u]) + 1e-6 * edge * length_scale_) * std::pow(worst_aspect, options_.aspect_power) * valence_penalty * coverage * coverage *
          turning_penalty;
 }
 

@@ -15,6 +15,7 @@ struct DecimateOptions {
   uint32_t target_vertices = 16;   // stop there; earlier where no collapse is sound any more
   int max_valence = 12;            // of a base vertex, at most 64; one that the input has more of may stay
   double min_normal_cosine = 0.2;  // between a new triangle and the one it replaces
+  double aspect_power = 1;         // of the worst aspect ratio, in the cost of a collapse: 2 makes for rounder triangles
 };
 
 // mesh: oriented manifold, with or without border, one fan per vertex. topology: its own, with its curves; corners

@@ -1,0 +1,24 @@
+// Which of several simplifications of a surface gives the better base meshes.
+//
+// Long triangles follow creases and necks, round ones suit the butterfly: which takes fewer bits differs from surface to surface by up to a
+// tenth, and no geometric measure of the base was found that tells. The details of the normal meshes do, before anything is coded
+// (docs/decisions/0013-base-shape.md).
+#ifndef LACERTA_DRACO_BASE_SHAPE_H_
+#define LACERTA_DRACO_BASE_SHAPE_H_
+
+#include "common/subdivision.h"
+#include "remesh/collapse_history.h"
+#include "remesh/input_surface.h"
+
+namespace lacerta {
+
+// Simplifies the surface in more than one way and returns the history over whose base meshes, near the usual sizes, the details take the
+// fewest bits.
+//   topology      of surface.mesh(), with its curves
+//   typical_base  vertices of the base meshes that streams of the quality asked for usually have
+//   lambda        slope of the rate-distortion curve, squared model units per bit
+CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& topology, double typical_base, double lambda);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DRACO_BASE_SHAPE_H_
