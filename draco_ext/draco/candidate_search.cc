@@ -40,7 +40,7 @@ double UsualLambda(double psnr, double diagonal) {
 
 CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double remesh_psnr, const SurfaceDistanceMeter& meter,
                                  const ResolvedTarget& target, EncodeMode mode)
-    : candidate_(candidate), remesh_psnr_(remesh_psnr), assumed_psnr_(remesh_psnr), meter_(meter), target_(target), mode_(mode) {
+    : candidate_(candidate), remesh_psnr_(remesh_psnr), meter_(meter), target_(target), mode_(mode) {
   start_ = std::log(UsualLambda(target_.is_rate ? kUsualPsnr : target_.psnr, meter_.diagonal()));
 }
 
@@ -53,19 +53,19 @@ double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogByte
 StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda) {
   Attempt attempt;
   LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({std::exp(kept_steps_.value_or(log_lambda)), std::exp(log_lambda), passes_}, mode_));
+  const double estimate = EstimatePsnr(attempt.stream);
   if (!offset_) {
     constexpr uint64_t kRoughSamples = 50'000;
-    offset_ = MeasurePsnr(attempt, kRoughSamples) - EstimatePsnr(attempt.stream, remesh_psnr_);
+    offset_ = MeasurePsnr(attempt, kRoughSamples) - estimate;
   }
-  const double estimate = EstimatePsnr(attempt.stream, assumed_psnr_);
   attempt.psnr = estimate + *offset_;
   attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : estimate;
   values_[log_lambda] = attempt.value;
   return attempt;
 }
 
-double CandidateSearch::EstimatePsnr(const CodedStream& stream, double remesh_psnr) const {
-  const double remesh_distance = DistanceOfPsnr(remesh_psnr, meter_.diagonal());
+double CandidateSearch::EstimatePsnr(const CodedStream& stream) const {
+  const double remesh_distance = DistanceOfPsnr(remesh_psnr_, meter_.diagonal());
   return Psnr(std::sqrt(stream.plane_distortion + remesh_distance * remesh_distance), meter_.diagonal());
 }
 

@@ -38,9 +38,6 @@ class CandidateSearch {
   CandidateSearch(const NormalMeshCandidate& candidate, double remesh_psnr, const SurfaceDistanceMeter& meter,
                   const ResolvedTarget& target, EncodeMode mode);
 
-  // The remesh that is coded in the end will have more levels and this PSNR: streams are judged as if it were this one.
-  void AssumeRemesh(double psnr) { assumed_psnr_ = psnr; }
-
   // Codes near the target with an attempt or two and extrapolates to it: ln(bytes) at the PSNR, or -PSNR at the bytes. Smaller is
   // better.
   StatusOr<double> Score();
@@ -60,7 +57,7 @@ class CandidateSearch {
     double value = 0;  // as in values_
   };
   StatusOr<Attempt> Try(double log_lambda);
-  double EstimatePsnr(const CodedStream& stream, double remesh_psnr) const;
+  double EstimatePsnr(const CodedStream& stream) const;
   double MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const;
   double Goal() const;  // the value aimed at
   double TypicalSlope() const;
@@ -77,7 +74,6 @@ class CandidateSearch {
 
   const NormalMeshCandidate& candidate_;
   const double remesh_psnr_;
-  double assumed_psnr_;
   const SurfaceDistanceMeter& meter_;
   const ResolvedTarget target_;
   const EncodeMode mode_;

@@ -40,8 +40,6 @@ struct Rung {
   std::unique_ptr<CandidateSearch> search;
   Status status;  // why there is no candidate, if so
   double remesh_psnr = 0;
-  int levels = 0;             // of the candidate
-  bool lacks_level = false;   // it has one level less than a candidate that is coded, which is enough to score it
   double score = std::numeric_limits<double>::infinity();  // of CandidateSearch::Score; infinite: cannot reach the target
   double start = 0;                                        // of CandidateSearch::start, where there is a score
 };
@@ -110,7 +108,7 @@ class Ladder {
   StatusOr<ChosenStream> Meet(int number) {
     Rung& rung = rungs_.at(number);
     if (!rung.candidate) {
-      LACERTA_RETURN_IF_ERROR(Remesh(number, /*enough_to_score=*/false, &rung));
+      LACERTA_RETURN_IF_ERROR(Remesh(number, &rung));
       if (std::isfinite(rung.score)) rung.search->BeginAt(rung.start);
     }
     LACERTA_ASSIGN_OR_RETURN(MeasuredStream measured, rung.search->Meet());
@@ -121,11 +119,8 @@ class Ladder {
 
  private:
   // Whether rung a scores so much worse than b that it hardly is a fluke: neighbouring rungs are rarely further from the smooth curve
-  // of all rungs, but for those that lack a level.
-  bool IsMuchWorse(const Rung& a, const Rung& b) const {
-    const double log_bytes = a.lacks_level || b.lacks_level ? 0.06 : 0.03;
-    return a.score >= b.score + (target_.is_rate ? 10 : 1) * log_bytes;
-  }
+  // of all rungs.
+  bool IsMuchWorse(const Rung& a, const Rung& b) const { return a.score >= b.score + (target_.is_rate ? 0.3 : 0.03); }
 
   static void LetGo(Rung* rung) {
     rung->search.reset();
@@ -159,39 +154,33 @@ class Ladder {
     for (auto& [r, rung] : made) rungs_[r] = std::move(rung);
   }
 
-  // Makes the candidate of a rung. enough_to_score: the last level, which costs most and codes least, may be missing.
-  Status Remesh(int number, bool enough_to_score, Rung* rung) const {
+  // Makes the candidate of a rung.
+  Status Remesh(int number, Rung* rung) const {
     const double goal = TypicalPsnr(target_, num_input_);
     constexpr double kComfort = 12;         // dB: a remesh nearer to the goal than that costs bytes...
     constexpr double kMostVertices = 6.0;  // ...and gets one level more, up to so many times the input's vertices
-    constexpr double kGoodForScore = 2.5;   // dB beyond the goal
-    constexpr double kGainOfLevel = 2;      // dB: what the missing level gains, less the bytes that it takes
-    if (rung->levels == 0) rung->levels = LevelsFor(RungSize(number), num_input_);
-    for (rung->levels += rung->lacks_level;; ++rung->levels) {
+    for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
       LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate,
-                               NormalMeshCandidate::Create(surface_, RungSize(number), rung->levels, target_.base_coding));
+                               NormalMeshCandidate::Create(surface_, RungSize(number), levels, target_.base_coding));
       rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(candidate));
       constexpr uint64_t kRoughSamples = 30'000;
       const TriangleMesh remesh = rung->candidate->RemeshedSurface();
       LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(remesh, SurfaceDistanceOptions::RmsOnly(kRoughSamples)));
       rung->remesh_psnr = Psnr(distance.Rms(), meter_.diagonal());
       const double next_vertices = 4 * static_cast<double>(remesh.positions.size());
-      rung->lacks_level = rung->remesh_psnr <= goal + kComfort && next_vertices <= kMostVertices * num_input_;
-      if (!rung->lacks_level || (enough_to_score && rung->remesh_psnr > goal + kGoodForScore)) break;
+      if (rung->remesh_psnr > goal + kComfort || next_vertices > kMostVertices * num_input_) break;
     }
     rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_);
-    if (rung->lacks_level) rung->search->AssumeRemesh(rung->remesh_psnr + kGainOfLevel);
     return Status();
   }
 
   Status MakeAndScore(int number, Rung* rung) const {
-    LACERTA_RETURN_IF_ERROR(Remesh(number, /*enough_to_score=*/true, rung));
+    LACERTA_RETURN_IF_ERROR(Remesh(number, rung));
     constexpr double kHeadroom = 0.5;  // dB that quantization takes at least
     if (const std::optional<double> start = StartOf(number)) rung->search->BeginAt(*start);
     if (!target_.is_rate && rung->remesh_psnr < target_.psnr + kHeadroom) return Status();
     LACERTA_ASSIGN_OR_RETURN(rung->score, rung->search->Score());
     rung->start = rung->search->start();
-    if (rung->lacks_level) LetGo(rung);
     return Status();
   }
 
