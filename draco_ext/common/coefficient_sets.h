@@ -29,6 +29,9 @@ struct LevelSteps {
   // Reconstructed magnitudes are |q| - bias / 32 steps: 0 is the middle of a bin, 15 almost its lower end.
   uint8_t normal_bias = 0;      // 0..15
   uint8_t tangential_bias = 0;  // 0..15
+
+  // Whether no set is coded. Such a level has no segment.
+  bool is_silent() const { return normal_step == 0 && tangential_step == 0; }
 };
 
 // The step nearest to `step` that a stream can hold: the upper 16 bits of its binary32 form, rounded to nearest.

@@ -1,18 +1,23 @@
 #include "common/stream_layout.h"
 
+#include <cstring>
+
 #include "common/crc32.h"
 
 namespace lacerta {
 
-uint32_t BaseChecksum(const BaseMesh& base) {
+uint16_t BaseChecksum(const BaseMesh& base) {
   Crc32 crc;
+  uint32_t step_bits;
+  std::memcpy(&step_bits, &base.step, sizeof(step_bits));
+  crc.AddWord(step_bits);
   for (const auto& point : base.lattice) {
     for (const int32_t value : point) crc.AddWord(static_cast<uint32_t>(value));
   }
   for (const Triangle& triangle : base.triangles) {
     for (const uint32_t vertex : triangle) crc.AddWord(vertex);
   }
-  return crc.value();
+  return crc.low16();
 }
 
 uint16_t SegmentChecksum(int level, Span<const uint8_t> payload) {

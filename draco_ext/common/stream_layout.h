@@ -24,19 +24,28 @@ inline uint64_t MaxTagBytes(uint64_t num_vertices, uint64_t num_triangles) {
 }
 inline constexpr int32_t kMaxLatticeValue = (1 << 24) - 1;  // a binary32 holds it exactly
 
+// Flags of the refinement header, above the number of levels.
+inline constexpr uint8_t kHasTags = 1 << 4;
+inline constexpr uint8_t kHasBaseStep = 1 << 5;
+inline constexpr uint8_t kUnknownFlags = 0xc0;
+
+// Flags of a level.
+inline constexpr uint8_t kCodesNormal = 1;
+inline constexpr uint8_t kCodesTangential = 2;
+inline constexpr uint8_t kHasDifferences = 4;  // of the steps from the expected ones (common/step_forecast.h)
+inline constexpr uint8_t kHasBiases = 8;
+
 // The fields of the refinement header. The number of levels is steps.size().
 struct RefinementHeader {
-  uint32_t num_base_vertices = 0;
-  uint32_t num_base_triangles = 0;
-  float base_step = 0.0f;
-  uint32_t base_checksum = 0;
+  float base_step = 0.0f;  // 0: the base section tells it
+  uint16_t base_checksum = 0;
   std::vector<LevelSteps> steps;  // of levels 1, 2, ...
   Bytes tags;                     // payload of CodeBaseTags (common/base_tags_coding.h); empty: none
 };
 
-// CRC-32 over the lattice values (three per vertex) and the triangles (three indices each) as 4-byte little-endian
+// Lower half of the CRC-32 over step, lattice values (three per vertex) and triangles (three indices each) as 4-byte little-endian
 // words.
-uint32_t BaseChecksum(const BaseMesh& base);
+uint16_t BaseChecksum(const BaseMesh& base);
 
 // The checksum that the segment of `level` carries.
 uint16_t SegmentChecksum(int level, Span<const uint8_t> payload);

@@ -41,6 +41,12 @@ class ByteCursor {
     return 0;
   }
 
+  // 0, -1, 1, -2, 2, ... as the varints 0, 1, 2, 3, 4, ...
+  int32_t SignedVarint() {
+    const uint32_t folded = Varint();
+    return static_cast<int32_t>(folded >> 1) ^ -static_cast<int32_t>(folded & 1);
+  }
+
   // The next bytes; none where there are not so many.
   Span<const uint8_t> Take(size_t size) {
     if (bytes_.size() - position_ < size) {

@@ -43,10 +43,7 @@ StatusOr<CompactBaseHeader> ReadHeader(ByteCursor* cursor) {
     for (int c = 0; c < 3; ++c) header.offset[c] = FloatFromBits(cursor->Word32());
   }
   header.extent_bits = cursor->Byte();
-  for (int32_t& value : header.origin) {
-    const uint32_t folded = cursor->Varint();
-    value = static_cast<int32_t>(folded >> 1) ^ -static_cast<int32_t>(folded & 1);
-  }
+  for (int32_t& value : header.origin) value = cursor->SignedVarint();
   if (cursor->at_end()) return InvalidData("compact base ends within its header");
   if (cursor->malformed()) return InvalidData("a number in the header of the compact base exceeds 32 bits");
   if (header.num_vertices < 3) return InvalidData("compact base has no triangle");

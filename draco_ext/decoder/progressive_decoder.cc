@@ -35,13 +35,9 @@ Status CheckBase(const BaseMesh& base, const DecodeLimits& limits) {
 }
 
 Status CheckHeaderFitsBase(const RefinementHeader& header, const BaseMesh& base) {
-  if (header.num_base_vertices == base.lattice.size() && header.num_base_triangles == base.triangles.size() &&
-      header.base_step == base.step && header.base_checksum == BaseChecksum(base)) {
-    return Status();
-  }
-  return InvalidData("the refinement was made for another base mesh (" + std::to_string(header.num_base_vertices) +
-                     " vertices, " + std::to_string(header.num_base_triangles) +
-                     " triangles): the base was edited, reordered or mixed up");
+  const bool same_step = header.base_step == 0 || header.base_step == base.step;
+  if (same_step && header.base_checksum == BaseChecksum(base)) return Status();
+  return InvalidData("the refinement was made for another base mesh: the base was edited, reordered or mixed up");
 }
 
 Status CheckLevelFits(const Topology& t, size_t num_still, int level, const DecodeLimits& limits) {
@@ -94,15 +90,16 @@ struct ProgressiveDecoder::State {
   }
   bool done() const { return !refinement.ok() || (header && mesh.num_levels >= last_level()); }
 
-  // Reads on in `bytes`; returns how many of them were used.
-  StatusOr<size_t> TakeHeader(Span<const uint8_t> bytes);
-  StatusOr<size_t> TakeSegment(Span<const uint8_t> bytes);
+  // Reads on in `bytes`; returns how many of them were used, or nothing where they end too early.
+  StatusOr<std::optional<size_t>> TakeHeader(Span<const uint8_t> bytes);
+  StatusOr<std::optional<size_t>> TakeSegment(Span<const uint8_t> bytes);
   Status AddLevel(const LevelSteps& steps, Span<const uint8_t> payload);
 };
 
-StatusOr<size_t> ProgressiveDecoder::State::TakeHeader(Span<const uint8_t> bytes) {
-  LACERTA_ASSIGN_OR_RETURN(std::optional<ReadHeader> read, ReadRefinementHeader(bytes));
-  if (!read) return size_t{0};
+StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeHeader(Span<const uint8_t> bytes) {
+  LACERTA_ASSIGN_OR_RETURN(std::optional<ReadHeader> read,
+                           ReadRefinementHeader(bytes, MaxTagBytes(base.lattice.size(), base.triangles.size())));
+  if (!read) return std::optional<size_t>();
   LACERTA_RETURN_IF_ERROR(CheckHeaderFitsBase(read->header, base));
   BaseTags tags;
   LACERTA_ASSIGN_OR_RETURN(topology, ReadTopology(base, read->header.tags, &tags));
@@ -111,16 +108,20 @@ StatusOr<size_t> ProgressiveDecoder::State::TakeHeader(Span<const uint8_t> bytes
   num_still = NumStill(mesh.tags);
   stencils.emplace(topology);
   header = std::move(read->header);
-  return read->size;
+  return std::optional<size_t>(read->size);
 }
 
-StatusOr<size_t> ProgressiveDecoder::State::TakeSegment(Span<const uint8_t> bytes) {
+StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeSegment(Span<const uint8_t> bytes) {
   const int level = mesh.num_levels + 1;
   LACERTA_RETURN_IF_ERROR(CheckLevelFits(topology, num_still, level, options.limits));
-  LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadSegment> segment, ReadRefinementSegment(bytes, level));
-  if (!segment) return size_t{0};
-  LACERTA_RETURN_IF_ERROR(AddLevel(header->steps[mesh.num_levels], segment->payload));
-  return segment->size;
+  const LevelSteps& steps = header->steps[static_cast<size_t>(mesh.num_levels)];
+  std::optional<ReadSegment> segment = ReadSegment();  // of a silent level
+  if (!steps.is_silent()) {
+    LACERTA_ASSIGN_OR_RETURN(segment, ReadRefinementSegment(bytes, level));
+  }
+  if (!segment) return std::optional<size_t>();
+  LACERTA_RETURN_IF_ERROR(AddLevel(steps, segment->payload));
+  return std::optional<size_t>(segment->size);
 }
 
 Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const uint8_t> payload) {
@@ -158,10 +159,10 @@ Status ProgressiveDecoder::Append(Span<const uint8_t> bytes) {
   size_t used = 0;
   while (!s.done()) {
     const Span<const uint8_t> rest = Span<const uint8_t>(s.pending.data(), s.pending.size()).Subspan(used);
-    const StatusOr<size_t> taken = s.header ? s.TakeSegment(rest) : s.TakeHeader(rest);
+    const StatusOr<std::optional<size_t>> taken = s.header ? s.TakeSegment(rest) : s.TakeHeader(rest);
     if (!taken.ok()) s.refinement = taken.status();
-    if (!taken.ok() || taken.value() == 0) break;
-    used += taken.value();
+    if (!taken.ok() || !taken.value()) break;
+    used += *taken.value();
   }
   s.bytes_used += used;
   s.pending.erase(s.pending.begin(), s.pending.begin() + static_cast<ptrdiff_t>(used));
@@ -185,9 +186,7 @@ const SemiRegularMesh& ProgressiveDecoder::mesh() const { return state_->mesh; }
 StatusOr<RefinementInfo> ReadRefinementInfo(Span<const uint8_t> refinement) {
   LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadHeader> read, ReadRefinementHeader(refinement));
   if (!read) return InvalidData("the refinement header is incomplete: " + std::to_string(refinement.size()) + " bytes");
-  const RefinementHeader& header = read->header;
-  return RefinementInfo{static_cast<int>(header.steps.size()), header.num_base_vertices, header.num_base_triangles,
-                        header.base_step};
+  return RefinementInfo{static_cast<int>(read->header.steps.size()), read->header.base_step};
 }
 
 StatusOr<RefinementResult> DecodeRefinement(const BaseMesh& base, Span<const uint8_t> refinement,

@@ -1,34 +1,60 @@
 #include "decoder/stream_reader.h"
 
-#include <cmath>
-#include <cstring>
+#include <algorithm>
 #include <string>
 #include <utility>
 
 #include "common/crc32.h"
+#include "common/step_forecast.h"
 #include "decoder/byte_cursor.h"
 
 namespace lacerta {
 namespace {
 
-LevelSteps ReadSteps(ByteCursor& cursor) {
-  LevelSteps steps;
-  const uint16_t normal = cursor.Word16(), tangential = cursor.Word16();
-  steps.normal_step = StepFromBits(normal);
-  steps.tangential_step = StepFromBits(tangential);
-  if (normal != 0 || tangential != 0) {
-    const uint8_t biases = cursor.Byte();
-    steps.normal_bias = biases & 15;
-    steps.tangential_bias = biases >> 4;
+// Reads the steps of all levels. Returns what is wrong with them, or null: the header may still end early or have a wrong checksum,
+// which is told first.
+const char* ReadSteps(int num_levels, ByteCursor* cursor, std::vector<LevelSteps>* steps) {
+  Bytes flags;
+  for (int i = 0; i < num_levels; i += 2) {
+    const uint8_t two = cursor->Byte();
+    flags.push_back(two & 15);
+    flags.push_back(two >> 4);
   }
-  return steps;
+  bool is_sound = true;
+  int normal_bits = cursor->Word16();
+  const auto check = [&](int64_t bits) {
+    if (IsStepBits(bits)) return static_cast<int>(bits);
+    is_sound = false;
+    return kLeastStepBits;
+  };
+  normal_bits = check(normal_bits);
+  for (int i = 0; i < num_levels; ++i) {
+    const uint8_t f = flags[static_cast<size_t>(i)];
+    const auto difference = [&] { return (f & kHasDifferences) != 0 ? int64_t{cursor->SignedVarint()} : 0; };
+    LevelSteps s;
+    if ((f & kCodesNormal) != 0) {
+      normal_bits = check(normal_bits + difference());
+      s.normal_step = StepFromBits(static_cast<uint16_t>(normal_bits));
+    }
+    if ((f & kCodesTangential) != 0)
+      s.tangential_step = StepFromBits(static_cast<uint16_t>(check(TangentialStepBits(normal_bits) + difference())));
+    if ((f & kHasBiases) != 0) {
+      const uint8_t biases = cursor->Byte();
+      s.normal_bias = biases & 15;
+      s.tangential_bias = biases >> 4;
+    }
+    steps->push_back(s);
+    normal_bits = NextStepBits(normal_bits);
+  }
+  if (!is_sound) return "a quantization step in the refinement header is not a positive number";
+  const auto is_without_use = [](uint8_t f) { return f != 0 && (f & (kCodesNormal | kCodesTangential)) == 0; };
+  if ((num_levels % 2 == 0 || flags.back() == 0) && std::none_of(flags.begin(), flags.end(), is_without_use)) return nullptr;
+  return "a level in the refinement header has flags, but no coefficients";
 }
-
-bool IsStepOfStream(float step) { return step == 0.0f ? !std::signbit(step) : step > 0 && std::isnormal(step); }
 
 }  // namespace
 
-StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> bytes) {
+StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> bytes, uint64_t max_tag_bytes) {
   using Result = std::optional<ReadHeader>;
   ByteCursor cursor(bytes);
   for (const uint8_t expected : kRefinementMagic) {
@@ -43,23 +69,22 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
     return Unsupported("refinement version " + std::to_string(version) + " is not known, this decoder reads version " +
                        std::to_string(kRefinementVersion) + "; a newer Lacerta may read it");
   }
-  const int levels_and_layers = cursor.Byte();
+  const int levels_and_flags = cursor.Byte();
   if (cursor.at_end()) return Result();
-  const int num_levels = levels_and_layers & 0x0f, num_layers = levels_and_layers >> 4;
-  if (num_layers != 1) return Unsupported(std::to_string(num_layers) + " quality layers per level; version 1 has one");
+  const int num_levels = levels_and_flags & 0x0f;
+  if ((levels_and_flags & kUnknownFlags) != 0)
+    return Unsupported("the refinement header has flags that this decoder does not know; a newer Lacerta may read it");
   if (num_levels < 1 || num_levels > kMaxLevels) {
     return InvalidData(std::to_string(num_levels) + " refinement levels; 1 to " + std::to_string(kMaxLevels) +
                        " are legal");
   }
   RefinementHeader header;
-  header.num_base_vertices = cursor.Varint();
-  header.num_base_triangles = cursor.Varint();
-  const uint32_t step_bits = cursor.Word32();
-  std::memcpy(&header.base_step, &step_bits, sizeof(step_bits));
-  header.base_checksum = cursor.Word32();
-  for (int level = 1; level <= num_levels; ++level) header.steps.push_back(ReadSteps(cursor));
-  const uint32_t tags_size = cursor.Varint();
-  if (!cursor.at_end() && tags_size > MaxTagBytes(header.num_base_vertices, header.num_base_triangles)) {
+  const bool has_base_step = (levels_and_flags & kHasBaseStep) != 0, has_tags = (levels_and_flags & kHasTags) != 0;
+  const uint16_t base_step_bits = has_base_step ? cursor.Word16() : uint16_t{0};
+  header.base_checksum = cursor.Word16();
+  const char* const fault_of_steps = ReadSteps(num_levels, &cursor, &header.steps);
+  const uint32_t tags_size = has_tags ? cursor.Varint() : 0;
+  if (!cursor.at_end() && (tags_size > max_tag_bytes || (has_tags && tags_size == 0))) {
     return InvalidData("the refinement header is damaged (" + std::to_string(tags_size) + " bytes of tags)");
   }
   const Span<const uint8_t> tags = cursor.Take(tags_size);
@@ -70,14 +95,10 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   crc.Add(bytes.First(checked_size));
   if (crc.low16() != checksum) return InvalidData("the refinement header is damaged (checksum mismatch)");
   header.tags.assign(tags.begin(), tags.end());
-  if (cursor.malformed()) return InvalidData("a count in the refinement header exceeds 32 bits");
-  if (!(header.base_step > 0) || !std::isnormal(header.base_step)) {
-    return InvalidData("the base step in the refinement header is not a positive number");
-  }
-  for (const LevelSteps& s : header.steps) {
-    if (IsStepOfStream(s.normal_step) && IsStepOfStream(s.tangential_step)) continue;
-    return InvalidData("a quantization step in the refinement header is not a positive number");
-  }
+  if (cursor.malformed()) return InvalidData("a number in the refinement header exceeds 32 bits");
+  if (has_base_step && !IsStepBits(base_step_bits)) return InvalidData("the base step in the refinement header is not a positive number");
+  header.base_step = StepFromBits(base_step_bits);
+  if (fault_of_steps != nullptr) return InvalidData(fault_of_steps);
   return Result(ReadHeader{std::move(header), cursor.position()});
 }
 

@@ -218,7 +218,7 @@ StatusOr<DecodedBase> DecodeBaseMesh(Span<const uint8_t> stream, const DecodeLim
 StatusOr<DecodedBase> DecodeBaseOf(const StreamParts& parts, const DecodeLimits& limits) {
   if (parts.coding == BaseCoding::kCompact) {
     LACERTA_ASSIGN_OR_RETURN(const CompactBase compact, DecodeCompactBase(parts.base, limits));
-    return DecodedBase{compact.ToMesh(), parts.base.size()};
+    return DecodedBase{compact.ToMesh(), parts.base.size(), compact.mesh.step};
   }
   LACERTA_ASSIGN_OR_RETURN(DecodedBase base, DecodeBaseMesh(parts.base, limits));
   if (base.bytes_used == parts.base.size()) return base;

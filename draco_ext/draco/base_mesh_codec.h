@@ -51,6 +51,7 @@ float ShortStep(float step);
 struct DecodedBase {
   TriangleMesh mesh;      // floats as stock Draco gives them, or as of the compact base
   size_t bytes_used = 0;  // length of the base at the front of the stream; what follows is refinement
+  float step = 0;         // of the lattice of a compact base; 0: the refinement tells it
 };
 
 // Decodes the stock Draco mesh stream at the front of `stream`, whatever its method and attributes, and checks all

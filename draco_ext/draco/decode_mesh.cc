@@ -9,11 +9,13 @@
 namespace lacerta {
 namespace {
 
-// Takes the levels of `refinement` into `result`, which holds the base.
-Status Refine(Span<const uint8_t> refinement, const DecodeOptions& options, DecodedMesh* result) {
+// Takes the levels of `refinement` into `result`, which holds the base. base_step: as in RefineBase.
+Status Refine(Span<const uint8_t> refinement, const DecodeOptions& options, float base_step, DecodedMesh* result) {
   LACERTA_ASSIGN_OR_RETURN(const RefinementInfo info, ReadRefinementInfo(refinement));
   result->num_levels = info.num_levels;
-  LACERTA_ASSIGN_OR_RETURN(const BaseMesh base, BaseMeshFromPositions(result->mesh, info.base_step));
+  if (info.base_step != 0) base_step = info.base_step;
+  if (base_step == 0) return InvalidData("neither the base mesh nor the refinement header tells the step of the base lattice");
+  LACERTA_ASSIGN_OR_RETURN(const BaseMesh base, BaseMeshFromPositions(result->mesh, base_step));
   RefinementOptions refinement_options;
   refinement_options.max_level = options.max_level;
   refinement_options.limits = options.limits;
@@ -40,17 +42,17 @@ Status CheckDecodeOptions(const DecodeOptions& options) {
   return {};
 }
 
-DecodedMesh RefineBase(TriangleMesh base, Span<const uint8_t> refinement, const DecodeOptions& options) {
+DecodedMesh RefineBase(TriangleMesh base, Span<const uint8_t> refinement, const DecodeOptions& options, float base_step) {
   DecodedMesh result;
   result.mesh = std::move(base);
-  if (!refinement.empty()) result.refinement = Refine(refinement, options, &result);
+  if (!refinement.empty()) result.refinement = Refine(refinement, options, base_step, &result);
   return result;
 }
 
 StatusOr<DecodedMesh> DecodeCustomFormParts(const StreamParts& parts, const DecodeOptions& options) {
   auto base = DecodeBaseOf(parts, options.limits);
   if (!base.ok()) return base.status().WithContext("base of the custom form");
-  return RefineBase(std::move(base).value().mesh, parts.refinement, options);
+  return RefineBase(std::move(base.value().mesh), parts.refinement, options, base.value().step);
 }
 
 StatusOr<DecodedMesh> DecodeMesh(Span<const uint8_t> stream, const DecodeOptions& options) {

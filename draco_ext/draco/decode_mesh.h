@@ -16,7 +16,8 @@ Status CheckDecodeOptions(const DecodeOptions& options);
 
 // Refines a decoded base as far as the bytes and options go. Whatever is wrong with the refinement ends up in
 // DecodedMesh::refinement; the base is always there.
-DecodedMesh RefineBase(TriangleMesh base, Span<const uint8_t> refinement, const DecodeOptions& options);
+//   base_step  of a compact base, or 0: the refinement tells it
+DecodedMesh RefineBase(TriangleMesh base, Span<const uint8_t> refinement, const DecodeOptions& options, float base_step = 0.0f);
 
 // Decodes base and refinement of the custom form. Fails where the base does not decode or does not fill its part.
 StatusOr<DecodedMesh> DecodeCustomFormParts(const StreamParts& parts, const DecodeOptions& options);

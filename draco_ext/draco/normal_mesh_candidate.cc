@@ -135,7 +135,8 @@ StatusOr<CodedStream> NormalMeshCandidate::Code(const CodingSlope& slope, Encode
   CodedStream stream;
   LACERTA_ASSIGN_OR_RETURN(stream.base, RecodeBaseMesh(base_, coded.base));
   const Span<const Topology> topologies = Span<const Topology>(target_.topologies.data(), coded.levels.size());
-  LACERTA_ASSIGN_OR_RETURN(RefinementBytes refinement, WriteRefinement(coded.base, topologies, coded.steps, coded.levels, normal_mesh_.mesh.tags));
+  const BaseStepField base_step = base_.coding == BaseCoding::kCompact ? BaseStepField::kLeftOut : BaseStepField::kWritten;
+  LACERTA_ASSIGN_OR_RETURN(RefinementBytes refinement, WriteRefinement(coded.base, topologies, coded.steps, coded.levels, normal_mesh_.mesh.tags, base_step));
   stream.part_sizes = {stream.base.size()};
   stream.part_sizes.insert(stream.part_sizes.end(), refinement.part_sizes.begin(), refinement.part_sizes.end());
   stream.refinement = std::move(refinement.bytes);

@@ -24,6 +24,11 @@ inline void PutVarint(size_t value, Bytes* bytes) {
   bytes->push_back(static_cast<uint8_t>(value));
 }
 
+// 0, -1, 1, -2, 2, ... as the varints 0, 1, 2, 3, 4, ...
+inline void PutSignedVarint(int32_t value, Bytes* bytes) {
+  PutVarint(value < 0 ? 2 * static_cast<uint32_t>(-(value + 1)) + 1 : 2 * static_cast<uint32_t>(value), bytes);
+}
+
 }  // namespace lacerta
 
 #endif  // LACERTA_ENCODER_BYTE_WRITER_H_

@@ -37,9 +37,7 @@ Bytes WriteHeader(const CompactBaseHeader& header) {
     for (int c = 0; c < 3; ++c) PutWord32(BitsOf(header.offset[c]), &bytes);
   }
   bytes.push_back(static_cast<uint8_t>(header.extent_bits));
-  for (const int32_t value : header.origin) {
-    PutVarint(value < 0 ? 2 * static_cast<uint32_t>(-(value + 1)) + 1 : 2 * static_cast<uint32_t>(value), &bytes);
-  }
+  for (const int32_t value : header.origin) PutSignedVarint(value, &bytes);
   return bytes;
 }
 

@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "common/local_frame.h"
+#include "common/step_forecast.h"
 
 namespace lacerta {
 namespace {
 
 constexpr double kSlopeShare = 0.12;       // lambda / (step^2 / N) where detail ends
-constexpr double kStepRatio = 1.2;         // between the steps of two levels below that
+constexpr double kStepRatio = 1.2;         // between the steps of two levels below that, rounded as the header expects it (NextStepBits)
 constexpr double kActiveScale = 0.5;       // a level carries detail when its scale exceeds this share of its step
 constexpr double kTangentialRatio = 2.0;   // of the tangential to the normal step
 constexpr double kBaseVertices = 2.5e4;    // the base lattice is as fine as the steps of a level of so many vertices
@@ -65,8 +66,10 @@ std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, const std::ve
   for (int i = active - 1; i >= 0; --i) steps[i] = steps[i + 1] / kStepRatio;
   std::vector<LevelSteps> result(num_levels);
   for (int i = 0; i < num_levels; ++i) {
-    result[i].normal_step = RoundStep(static_cast<float>(steps[i]));
-    result[i].tangential_step = RoundStep(static_cast<float>(kTangentialRatio * steps[i]));
+    const bool is_expected = i > 0 && i <= active && result[i - 1].normal_step > 0;
+    result[i].normal_step = is_expected ? StepFromBits(static_cast<uint16_t>(NextStepBits(StepToBits(result[i - 1].normal_step))))
+                                        : RoundStep(static_cast<float>(steps[i]));
+    result[i].tangential_step = RoundStep(static_cast<float>(kTangentialRatio) * result[i].normal_step);
   }
   return result;
 }

@@ -1,14 +1,13 @@
 #include "encoder/stream_writer.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <string>
 #include <utility>
 
 #include "common/base_tags_coding.h"
 #include "common/coefficient_coding.h"
 #include "common/crc32.h"
+#include "common/step_forecast.h"
 #include "common/stream_layout.h"
 #include "encoder/byte_writer.h"
 #include "encoder/range_encoder.h"
@@ -16,27 +15,64 @@
 namespace lacerta {
 namespace {
 
-void PutSteps(const LevelSteps& s, Bytes* bytes) {
-  PutWord16(StepToBits(s.normal_step), bytes);
-  PutWord16(StepToBits(s.tangential_step), bytes);
-  const int normal_bias = s.normal_step > 0 ? s.normal_bias : 0;
-  const int tangential_bias = s.tangential_step > 0 ? s.tangential_bias : 0;
-  if (s.normal_step > 0 || s.tangential_step > 0)
-    bytes->push_back(static_cast<uint8_t>(normal_bias | tangential_bias << 4));
+// A step beside the code that is expected of it.
+struct ToldStep {
+  bool is_coded;
+  int bits, expected;
+
+  bool is_expected() const { return !is_coded || bits == expected; }
+};
+
+ToldStep Tell(float step, int expected) { return {step > 0, StepToBits(step), expected}; }
+
+// Code of the normal step of level 1, or, where it has none, of one from which later steps come out as expected.
+int FirstStepBits(const std::vector<LevelSteps>& steps) {
+  size_t i = 0;
+  while (i < steps.size() && steps[i].is_silent()) ++i;
+  if (i == steps.size()) return kLeastStepBits;
+  const LevelSteps& coded = steps[i];
+  int bits = coded.normal_step > 0 ? StepToBits(coded.normal_step)
+                                   : std::max(kLeastStepBits, StepToBits(coded.tangential_step) - TangentialStepBits(0));
+  for (; i > 0; --i) {
+    int before = bits;
+    while (before > kLeastStepBits && NextStepBits(before) > bits) --before;
+    bits = before;
+  }
+  return bits;
 }
 
-Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps, const Bytes& tags) {
+void PutSteps(const std::vector<LevelSteps>& steps, Bytes* bytes) {
+  Bytes flags, fields;
+  int normal_bits = FirstStepBits(steps);
+  PutWord16(static_cast<uint32_t>(normal_bits), &fields);
+  for (const LevelSteps& s : steps) {
+    const ToldStep normal = Tell(s.normal_step, normal_bits);
+    if (normal.is_coded) normal_bits = normal.bits;
+    const ToldStep tangential = Tell(s.tangential_step, TangentialStepBits(normal_bits));
+    const int biases = (normal.is_coded ? s.normal_bias : 0) | (tangential.is_coded ? s.tangential_bias << 4 : 0);
+    const bool differs = !normal.is_expected() || !tangential.is_expected();
+    flags.push_back(static_cast<uint8_t>((normal.is_coded ? kCodesNormal : 0) | (tangential.is_coded ? kCodesTangential : 0) |
+                                         (differs ? kHasDifferences : 0) | (biases != 0 ? kHasBiases : 0)));
+    for (const ToldStep& step : {normal, tangential}) {
+      if (differs && step.is_coded) PutSignedVarint(step.bits - step.expected, &fields);
+    }
+    if (biases != 0) fields.push_back(static_cast<uint8_t>(biases));
+    normal_bits = NextStepBits(normal_bits);
+  }
+  flags.resize(flags.size() + flags.size() % 2);
+  for (size_t i = 0; i < flags.size(); i += 2) bytes->push_back(static_cast<uint8_t>(flags[i] | flags[i + 1] << 4));
+  bytes->insert(bytes->end(), fields.begin(), fields.end());
+}
+
+Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps, const Bytes& tags, BaseStepField base_step) {
   Bytes bytes(kRefinementMagic.begin(), kRefinementMagic.end());
   bytes.push_back(kRefinementVersion);
-  bytes.push_back(static_cast<uint8_t>(steps.size() | 1 << 4));  // one quality layer
-  PutVarint(base.lattice.size(), &bytes);
-  PutVarint(base.triangles.size(), &bytes);
-  uint32_t step_bits;
-  std::memcpy(&step_bits, &base.step, sizeof(step_bits));
-  PutWord32(step_bits, &bytes);
-  PutWord32(BaseChecksum(base), &bytes);
-  for (const LevelSteps& s : steps) PutSteps(s, &bytes);
-  PutVarint(tags.size(), &bytes);
+  const bool has_base_step = base_step == BaseStepField::kWritten;
+  bytes.push_back(static_cast<uint8_t>(steps.size() | (tags.empty() ? 0 : kHasTags) | (has_base_step ? kHasBaseStep : 0)));
+  if (has_base_step) PutWord16(StepToBits(base.step), &bytes);
+  PutWord16(BaseChecksum(base), &bytes);
+  PutSteps(steps, &bytes);
+  if (!tags.empty()) PutVarint(tags.size(), &bytes);
   bytes.insert(bytes.end(), tags.begin(), tags.end());
   Crc32 crc;
   crc.Add(bytes);
@@ -120,15 +156,15 @@ StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_le
 
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topology> topologies,
                                           const std::vector<LevelSteps>& steps,
-                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags) {
+                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step) {
   if (topologies.size() != levels.size() || steps.size() != levels.size()) {
     return InvalidArgument("numbers of topologies, steps and levels differ");
   }
-  if (!(base.step > 0) || !std::isnormal(base.step)) return InvalidArgument("the base step must be a positive number");
+  if (!(base.step > 0) || RoundStep(base.step) != base.step) return InvalidArgument("the base step must be a positive number of 8 significant bits");
   RefinementBytes result;
   if (levels.empty()) return result;
   LACERTA_ASSIGN_OR_RETURN(const Bytes coded_tags, WriteTags(base, tags, topologies[0]));
-  result.bytes = WriteHeader(base, steps, coded_tags);
+  result.bytes = WriteHeader(base, steps, coded_tags, base_step);
   size_t part_begin = 0;
   CodingState state;
   for (size_t i = 0; i < levels.size(); ++i) {
@@ -137,7 +173,7 @@ StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topol
     RangeEncoder encoder;
     QuantizedLevel coefficients = levels[i];
     CodeLevel(topologies[i], steps[i], &state, &coefficients, &encoder);
-    PutSegment(level, encoder.Finish(), &result.bytes);
+    if (!steps[i].is_silent()) PutSegment(level, encoder.Finish(), &result.bytes);
     result.part_sizes.push_back(result.bytes.size() - part_begin);
     part_begin = result.bytes.size();
   }
@@ -145,10 +181,10 @@ StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topol
 }
 
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, const std::vector<LevelSteps>& steps,
-                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags) {
+                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step) {
   LACERTA_ASSIGN_OR_RETURN(const std::vector<Topology> topologies,
                            BuildTopologies(base, static_cast<int>(levels.size()), tags));
-  return WriteRefinement(base, topologies, steps, levels, tags);
+  return WriteRefinement(base, topologies, steps, levels, tags, base_step);
 }
 
 }  // namespace lacerta

@@ -15,9 +15,12 @@ namespace lacerta {
 
 struct RefinementBytes {
   Bytes bytes;
-  // Header and segment of level 1, then the segments of levels 2, 3, ...; they add up to bytes.size().
+  // Header and segment of level 1, then the segments of levels 2, 3, ...: of no byte where no set is coded. They add up to bytes.size().
   std::vector<size_t> part_sizes;
 };
+
+// The base step in the header: left out where the base section tells it (compact bases).
+enum class BaseStepField { kWritten, kLeftOut };
 
 // Connectivity of the levels whose edges carry coefficients: levels 0 .. num_levels - 1. Fails with kInvalidData where
 // the base cannot be refined (BuildTopology; more than 1,024 edges at a vertex) and with kInvalidArgument where
@@ -25,6 +28,7 @@ struct RefinementBytes {
 StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_levels, const BaseTags& tags = {});
 
 // Writes a refinement.
+//   base        its step as RoundStep returns it
 //   topologies  of BuildTopologies(base, L, tags)
 //   steps       L: quantization of levels 1..L, steps as RoundStep returns them
 //   levels      L: coefficients; levels[i] has one entry per edge of topologies[i], magnitudes up to kMaxMagnitude, and
@@ -36,11 +40,13 @@ StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_le
 // is to be split.
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topology> topologies,
                                           const std::vector<LevelSteps>& steps,
-                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags = {});
+                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags = {},
+                                          BaseStepField base_step = BaseStepField::kWritten);
 
 // The same, making the topologies itself.
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, const std::vector<LevelSteps>& steps,
-                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags = {});
+                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags = {},
+                                          BaseStepField base_step = BaseStepField::kWritten);
 
 }  // namespace lacerta
 

@@ -20,7 +20,7 @@ uint64_t CountEdges(const std::vector<Triangle>& triangles) {
   return edges.size();
 }
 
-// Adds the levels whose segments are complete.
+// Adds the levels that are complete: silent ones have no segment.
 Status AddLevels(Span<const uint8_t> refinement, uint64_t num_edges, StreamInfo* info) {
   LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadHeader> read, ReadRefinementHeader(refinement));
   if (!read.has_value()) return Status();
@@ -28,11 +28,13 @@ Status AddLevels(Span<const uint8_t> refinement, uint64_t num_edges, StreamInfo*
   size_t offset = read->size;
   level.bytes += read->size;
   for (size_t i = 1; i <= read->header.steps.size(); ++i) {
-    const StatusOr<std::optional<ReadSegment>> segment =
-        ReadRefinementSegment(refinement.Subspan(offset), static_cast<int>(i));
-    if (!segment.ok() || !segment.value().has_value()) return Status();
-    offset += segment.value()->size;
-    level.bytes += segment.value()->size;
+    if (!read->header.steps[i - 1].is_silent()) {
+      const StatusOr<std::optional<ReadSegment>> segment =
+          ReadRefinementSegment(refinement.Subspan(offset), static_cast<int>(i));
+      if (!segment.ok() || !segment.value().has_value()) return Status();
+      offset += segment.value()->size;
+      level.bytes += segment.value()->size;
+    }
     level.vertices += num_edges;
     num_edges = 2 * num_edges + 3 * level.triangles;
     level.triangles *= 4;

@@ -57,9 +57,7 @@ StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level);
 // What the header of a refinement tells before anything is decoded.
 struct RefinementInfo {
   int num_levels = 0;
-  uint32_t num_base_vertices = 0;
-  uint32_t num_base_triangles = 0;
-  float base_step = 0.0f;  // model units: what BaseMeshFromPositions wants
+  float base_step = 0.0f;  // model units: what BaseMeshFromPositions wants; 0 where only the compact base tells it
 };
 
 // Reads the header at the beginning of the bytes that follow the base section. Fails with kInvalidData where there is
