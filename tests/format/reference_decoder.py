@@ -35,6 +35,10 @@ class Reader:
                 return value
             shift += 7
 
+    def signed_varint(self):
+        folded = self.varint()
+        return folded >> 1 ^ -(folded & 1)
+
 
 def step_value(bits):
     return struct.unpack("<f", struct.pack("<I", bits << 16))[0]
@@ -42,23 +46,55 @@ def step_value(bits):
 
 def base_checksum(base):
     words = [value & 0xFFFFFFFF for row in base["lattice"] + base["triangles"] for value in row]
-    return zlib.crc32(struct.pack("<%dI" % len(words), *words))
+    return zlib.crc32(struct.pack("<f%dI" % len(words), base["step"], *words)) & 0xFFFF
+
+
+def next_step(bits):
+    """1.2 times as large."""
+    significand, exponent = 128 + (bits & 127), bits >> 7
+    grown = rounded(6 * significand, 5)
+    if grown >= 256:
+        grown, exponent = rounded(3 * significand, 5), exponent + 1
+    return min(128 * exponent + grown - 128, 0x7F7F)
+
+
+def read_steps(reader, num_levels):
+    flags = []
+    for _ in range((num_levels + 1) // 2):
+        byte = reader.unsigned(1)
+        flags += [byte & 15, byte >> 4]
+    assert not any(flags[num_levels:])
+    levels, normal = [], reader.unsigned(2)
+
+    def checked(step):
+        assert 0x0080 <= step <= 0x7F7F
+        return step
+
+    checked(normal)
+    for has in flags[:num_levels]:
+        assert has & 3 or not has
+        difference = reader.signed_varint if has & 4 else lambda: 0
+        if has & 1:
+            normal = checked(normal + difference())
+        tangential = checked(normal + 128 + difference()) if has & 2 else 0
+        biases = reader.unsigned(1) if has & 8 else 0
+        levels.append({"normal": (normal if has & 1 else 0, biases & 15), "tangential": (tangential, biases >> 4)})
+        normal = next_step(normal)
+    return levels
 
 
 def read_header(reader, base):
     assert reader.take(3) == b"LAC" and reader.unsigned(1) == 1
     counts = reader.unsigned(1)
-    assert counts >> 4 == 1 and 1 <= counts & 15 <= 12
-    assert reader.varint() == len(base["lattice"]) and reader.varint() == len(base["triangles"])
-    assert struct.unpack("<f", reader.take(4))[0] == base["step"]
-    assert reader.unsigned(4) == base_checksum(base)
-    levels = []
-    for _ in range(counts & 15):
-        normal, tangential = reader.unsigned(2), reader.unsigned(2)
-        biases = reader.unsigned(1) if normal or tangential else 0
-        levels.append({"normal": (normal, biases & 15), "tangential": (tangential, biases >> 4)})
-    length = reader.varint()
-    assert length <= 8 + 3 * (len(base["lattice"]) + 4 * len(base["triangles"])) // 2
+    assert counts < 64 and 1 <= counts & 15 <= 12
+    if counts & 32:
+        assert step_value(reader.unsigned(2)) == base["step"]
+    assert reader.unsigned(2) == base_checksum(base)
+    levels = read_steps(reader, counts & 15)
+    length = 0
+    if counts & 16:
+        length = reader.varint()
+        assert 0 < length <= 8 + 3 * (len(base["lattice"]) + 4 * len(base["triangles"])) // 2
     tags = reader.take(length)
     end = reader.at
     assert reader.unsigned(2) == zlib.crc32(reader.data[:end]) & 0xFFFF
@@ -839,7 +875,7 @@ def decode_compact_base(data):
     if bits == 0:
         step, *offset = struct.unpack("<4f", reader.take(16))
     extent_bits = reader.unsigned(1)
-    origin = [x >> 1 ^ -(x & 1) for x in (reader.varint() for _ in range(3))]
+    origin = [reader.signed_varint() for _ in range(3)]
     assert num_vertices >= 3 and num_borders <= num_vertices // 3 and extent_bits <= 25
     decoder = RangeDecoder(data[reader.at:])
     triangles = Connectivity(decoder, num_vertices, num_borders).decode()
@@ -857,7 +893,9 @@ def decode(base, data):
     steps, payload = read_header(reader, base)
     level, tags = tagged_level(base, payload)
     for number, sets in enumerate(steps, 1):
-        normal, tangential = coefficient_decoder.decode(level, sets, read_segment(reader, number))
+        silent = not sets["normal"][0] and not sets["tangential"][0]
+        payload = b"" if silent else read_segment(reader, number)
+        normal, tangential = coefficient_decoder.decode(level, sets, payload)
         synthesize(level, sets, normal, tangential, positions)
         coefficients.append({"normal": normal, "tangential": tangential})
         level = refine(level)

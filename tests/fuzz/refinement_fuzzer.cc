@@ -1,5 +1,5 @@
 // The whole refinement decoder on bytes with sound checksums, cut into pieces. Checksums would stop a fuzzer at the
-// door, so header and segments are put together from its bytes: steps, biases, tags, lengths and payloads are its own choice.
+// door, so header and segments are put together from its bytes: flags, steps, biases, tags, lengths and payloads are its own choice.
 #include "common/base_tags_coding.h"
 #include "common/crc32.h"
 #include "common/stream_layout.h"
@@ -19,30 +19,40 @@ void Put(uint32_t value, int num_bytes, Bytes* bytes) {
   for (int i = 0; i < num_bytes; ++i) bytes->push_back(static_cast<uint8_t>(value >> 8 * i));
 }
 
+// Whether levels of these flags have a segment.
+bool IsSilent(uint8_t flags) { return (flags & (lacerta::kCodesNormal | lacerta::kCodesTangential)) == 0; }
+
 Bytes MakeStream(const BaseMesh& base, lacerta::fuzz::FuzzInput* input) {
   Bytes bytes = {'L', 'A', 'C', lacerta::kRefinementVersion};
   const int num_levels = 1 + input->Byte() % lacerta::kMaxLevels;
-  bytes.push_back(static_cast<uint8_t>(0x10 | num_levels));
-  bytes.push_back(static_cast<uint8_t>(base.lattice.size()));  // both below 128: varints of one byte
-  bytes.push_back(static_cast<uint8_t>(base.triangles.size()));
-  uint32_t step_bits;
-  static_assert(sizeof(step_bits) == sizeof(base.step));
-  std::copy_n(reinterpret_cast<const uint8_t*>(&base.step), sizeof(step_bits), reinterpret_cast<uint8_t*>(&step_bits));
-  Put(step_bits, 4, &bytes);
-  Put(BaseChecksum(base), 4, &bytes);
-  for (int level = 1; level <= num_levels; ++level) {
-    const uint16_t normal = input->Word16(), tangential = input->Word16();
-    Put(normal, 2, &bytes);
-    Put(tangential, 2, &bytes);
-    if (normal != 0 || tangential != 0) Put(input->Byte(), 1, &bytes);
+  bytes.push_back(static_cast<uint8_t>(lacerta::kHasTags | lacerta::kHasBaseStep | num_levels));
+  Put(lacerta::StepToBits(base.step), 2, &bytes);
+  Put(BaseChecksum(base), 2, &bytes);
+  std::vector<uint8_t> flags(static_cast<size_t>(num_levels + num_levels % 2));
+  for (size_t i = 0; i < flags.size(); i += 2) {
+    const uint8_t two = input->Byte();
+    flags[i] = two & 15;
+    flags[i + 1] = i + 1 < static_cast<size_t>(num_levels) ? two >> 4 : 0;
+    bytes.push_back(static_cast<uint8_t>(flags[i] | flags[i + 1] << 4));
+  }
+  Put(input->Word16(), 2, &bytes);
+  for (const uint8_t f : flags) {
+    // Differences take as many bytes as their top bits say.
+    for (int sets = (f & lacerta::kHasDifferences) != 0 ? (f & 1) + (f >> 1 & 1) : 0; sets > 0; --sets) {
+      do bytes.push_back(input->Byte());
+      while (bytes.back() >= 0x80);
+    }
+    if ((f & lacerta::kHasBiases) != 0) bytes.push_back(input->Byte());
   }
   const Span<const uint8_t> tags = input->Take(input->Byte() & 0x1f);
-  Put(static_cast<uint32_t>(tags.size()), 1, &bytes);
+  if (tags.empty()) bytes[4] &= static_cast<uint8_t>(~lacerta::kHasTags);
+  if (!tags.empty()) Put(static_cast<uint32_t>(tags.size()), 1, &bytes);
   bytes.insert(bytes.end(), tags.begin(), tags.end());
   lacerta::Crc32 crc;
   crc.Add(bytes);
   Put(crc.low16(), 2, &bytes);
   for (int level = 1; level <= num_levels && !input->empty(); ++level) {
+    if (IsSilent(flags[static_cast<size_t>(level - 1)])) continue;
     const Span<const uint8_t> payload = input->Take(input->Byte() & 0x7f);
     Put(static_cast<uint32_t>(payload.size()), 1, &bytes);
     Put(lacerta::SegmentChecksum(level, payload), 2, &bytes);

@@ -17,13 +17,15 @@ TEST(Crc32Test, MatchesTheKnownCheckValue) {
 
 TEST(BaseChecksumTest, SeesEveryValueAndTheOrder) {
   const BaseMesh base{1.0f, {{{0, 1, 2}}, {{-3, 4, 5}}, {{6, 7, 8}}}, {{{0, 1, 2}}}};
-  BaseMesh moved = base, turned = base, swapped = base;
+  BaseMesh moved = base, turned = base, swapped = base, scaled = base;
   moved.lattice[1][2] += 1;
   turned.triangles[0] = {1, 2, 0};
   std::swap(swapped.lattice[0], swapped.lattice[1]);
   EXPECT_NE(BaseChecksum(base), BaseChecksum(moved));
   EXPECT_NE(BaseChecksum(base), BaseChecksum(turned));
   EXPECT_NE(BaseChecksum(base), BaseChecksum(swapped));
+  scaled.step = 1.0078125f;
+  EXPECT_NE(BaseChecksum(base), BaseChecksum(scaled));
 }
 
 TEST(SegmentChecksumTest, DependsOnTheLevel) {

@@ -51,9 +51,11 @@ void FixHeaderChecksum(size_t header_size, Bytes* bytes) {
   (*bytes)[header_size - 1] = static_cast<uint8_t>(crc.low16() >> 8);
 }
 
-// 3 mark, version, levels, two counts of one byte, step, checksum of the base, 2 levels of two steps and a byte,
-// length of the tags, checksum.
-constexpr size_t kHeaderSizeOfTwoLevels = 3 + 1 + 1 + 1 + 1 + 4 + 4 + 2 * 5 + 1 + 2;
+// Where fields of the header of two levels are: after mark and version, levels, base step, checksum of the base.
+constexpr size_t kLevelsAt = 3 + 1, kLevelFlagsAt = kLevelsAt + 1 + 2 + 2, kFirstStepAt = kLevelFlagsAt + 1;
+
+// Size of the header of a stream: that of level 1's part without its segment, which begins with its length.
+size_t HeaderSize(const Bytes& bytes) { return ReadRefinementHeader(bytes).value()->size; }
 
 TEST(ProgressiveDecoderTest, EveryPrefixDecodesToItsLastCompleteLevel) {
   const BaseMesh base = Octahedron();
@@ -151,18 +153,19 @@ TEST(ProgressiveDecoderTest, RefusesUnknownVersionByName) {
   EXPECT_EQ(ReadRefinementInfo(bytes).status().code(), StatusCode::kUnsupported);
 }
 
-TEST(ProgressiveDecoderTest, RefusesUnknownLayersAndLevels) {
+TEST(ProgressiveDecoderTest, RefusesUnknownFlagsAndLevels) {
   const BaseMesh base = Octahedron();
   const Bytes bytes = SmallStream(base, 2).bytes;
   const auto with_counts = [&](uint8_t byte) {
     Bytes changed = bytes;
-    changed[4] = byte;
+    changed[kLevelsAt] = byte;
     return Decode(base, changed).refinement;
   };
-  EXPECT_EQ(with_counts(0x22).code(), StatusCode::kUnsupported);
-  EXPECT_EQ(with_counts(0x02).code(), StatusCode::kUnsupported);
-  EXPECT_EQ(with_counts(0x10).code(), StatusCode::kInvalidData);
-  EXPECT_EQ(with_counts(0x1d).code(), StatusCode::kInvalidData);
+  EXPECT_TRUE(with_counts(0x22).ok());
+  EXPECT_EQ(with_counts(0x62).code(), StatusCode::kUnsupported);
+  EXPECT_EQ(with_counts(0xa2).code(), StatusCode::kUnsupported);
+  EXPECT_EQ(with_counts(0x20).code(), StatusCode::kInvalidData);
+  EXPECT_EQ(with_counts(0x2d).code(), StatusCode::kInvalidData);
 }
 
 TEST(ProgressiveDecoderTest, RefusesBytesThatAreNoRefinement) {
@@ -189,23 +192,91 @@ TEST(ProgressiveDecoderTest, RefusesAnotherBase) {
 TEST(ProgressiveDecoderTest, RefusesStepsOutOfRange) {
   const BaseMesh base = Octahedron();
   const Bytes bytes = SmallStream(base, 2).bytes;
-  constexpr size_t kFirstStep = 3 + 1 + 1 + 1 + 1 + 4 + 4;
+  const size_t header_size = HeaderSize(bytes);
   for (const int bits :
        {0x7f80 /* infinite */, 0x7fc0 /* NaN */, 0xbf80 /* -1 */, 0x0001 /* denormal */, 0x8000 /* -0 */}) {
-    Bytes changed = bytes;
-    changed[kFirstStep] = static_cast<uint8_t>(bits);
-    changed[kFirstStep + 1] = static_cast<uint8_t>(bits >> 8);
-    FixHeaderChecksum(kHeaderSizeOfTwoLevels, &changed);
-    EXPECT_THAT(Decode(base, changed).refinement.message(), HasSubstr("quantization step")) << bits;
+    const auto with_bits_at = [&, bits = bits](size_t at) {
+      Bytes changed = bytes;
+      changed[at] = static_cast<uint8_t>(bits);
+      changed[at + 1] = static_cast<uint8_t>(bits >> 8);
+      FixHeaderChecksum(header_size, &changed);
+      return Decode(base, changed).refinement.message();
+    };
+    EXPECT_THAT(with_bits_at(kFirstStepAt), HasSubstr("quantization step")) << bits;
+    EXPECT_THAT(with_bits_at(kLevelsAt + 1), HasSubstr("base step")) << bits;
   }
   Bytes same = bytes;
-  FixHeaderChecksum(kHeaderSizeOfTwoLevels, &same);
+  FixHeaderChecksum(header_size, &same);
   EXPECT_EQ(same, bytes);  // the layout that this test relies on
+}
+
+// A header of `num_levels` silent levels, with other flags and fields of levels in place of theirs.
+Bytes HeaderWith(const BaseMesh& base, size_t num_levels, const Bytes& flags_and_fields) {
+  const std::vector<QuantizedLevel> none = RandomCoefficients(base, static_cast<int>(num_levels), 1, 0.0).levels;
+  Bytes bytes = WriteRefinement(base, std::vector<LevelSteps>(num_levels), none).value().bytes;
+  bytes.resize(kLevelFlagsAt);
+  bytes.insert(bytes.end(), flags_and_fields.begin(), flags_and_fields.end());
+  bytes.resize(bytes.size() + 2);
+  FixHeaderChecksum(bytes.size(), &bytes);
+  return bytes;
+}
+
+TEST(ProgressiveDecoderTest, RefusesFlagsAndDifferencesOfLevelsThatMakeNoSense) {
+  const BaseMesh base = Octahedron();
+  const auto refusal = [&](size_t num_levels, const Bytes& flags_and_fields) {
+    return Decode(base, HeaderWith(base, num_levels, flags_and_fields)).refinement.message();
+  };
+  EXPECT_EQ(refusal(1, {0x01, 0x80, 0x3f}), "");
+  EXPECT_THAT(refusal(1, {0x04, 0x80, 0x3f}), HasSubstr("has flags, but no coefficients"));
+  EXPECT_THAT(refusal(1, {0x08, 0x80, 0x3f, 0x00}), HasSubstr("has flags, but no coefficients"));
+  EXPECT_THAT(refusal(1, {0x11, 0x80, 0x3f}), HasSubstr("has flags, but no coefficients"));  // of level 2 of 1
+  EXPECT_EQ(refusal(1, {0x05, 0x80, 0x3f, 0x03}), "");
+  EXPECT_THAT(refusal(1, {0x05, 0x80, 0x00, 0x01}), HasSubstr("quantization step"));  // 0x007f
+  EXPECT_THAT(refusal(1, {0x05, 0x80, 0x3f, 0xff, 0xff, 0xff, 0xff, 0x0f}), HasSubstr("quantization step"));
+  EXPECT_THAT(refusal(1, {0x05, 0x80, 0x3f, 0xfe, 0xff, 0xff, 0xff, 0x0f}), HasSubstr("quantization step"));
+  EXPECT_THAT(refusal(1, {0x05, 0x80, 0x3f, 0xff, 0xff, 0xff, 0xff, 0x1f}), HasSubstr("exceeds 32 bits"));
+  EXPECT_EQ(refusal(1, {0x03, 0xff, 0x7e}), "");
+  EXPECT_THAT(refusal(1, {0x03, 0x00, 0x7f}), HasSubstr("quantization step"));  // tangential: twice that
+}
+
+TEST(ProgressiveDecoderTest, SilentLevelsAreCompleteAsSoonAsTheLevelBefore) {
+  const BaseMesh base = Octahedron();
+  Coefficients c = RandomCoefficients(base, 4, 11);
+  for (const size_t i : {size_t{0}, size_t{2}, size_t{3}}) {
+    c.steps[i] = {};
+    c.levels[i].normal.assign(c.levels[i].normal.size(), 0);
+    c.levels[i].tangential.assign(c.levels[i].tangential.size(), 0);
+  }
+  const RefinementBytes refinement = WriteRefinement(base, c.steps, c.levels).value();
+  const size_t header_size = HeaderSize(refinement.bytes);
+  EXPECT_EQ(refinement.part_sizes[0], header_size);
+  EXPECT_EQ(refinement.part_sizes[2] + refinement.part_sizes[3], 0u);
+  for (size_t size = 0; size <= refinement.bytes.size(); ++size) {
+    const RefinementResult result = Decode(base, refinement.bytes, size);
+    ASSERT_TRUE(result.refinement.ok()) << result.refinement.message();
+    ASSERT_EQ(result.level, size < header_size ? 0 : size < refinement.bytes.size() ? 1 : 4) << size;
+  }
+  for (int max_level = 0; max_level < 4; ++max_level) {
+    RefinementOptions options;
+    options.max_level = max_level;
+    EXPECT_EQ(Decode(base, refinement.bytes, refinement.bytes.size(), options).level, max_level);
+  }
+}
+
+TEST(ProgressiveDecoderTest, BaseStepMayBeLeftOut) {
+  const BaseMesh base = Octahedron();
+  const Coefficients c = RandomCoefficients(base, 2, 11);
+  const Bytes bytes = WriteRefinement(base, c.steps, c.levels, {}, BaseStepField::kLeftOut).value().bytes;
+  EXPECT_EQ(Decode(base, bytes).level, 2);
+  EXPECT_EQ(ReadRefinementInfo(bytes).value().base_step, 0.0f);
+  BaseMesh other = base;
+  other.step *= 2;
+  EXPECT_THAT(Decode(other, bytes).refinement.message(), HasSubstr("another base mesh"));
 }
 
 TEST(ProgressiveDecoderTest, StopsAtPositionsThatAreNotFinite) {
   BaseMesh base = Octahedron();
-  base.step = 1e36f;
+  base.step = RoundStep(1e36f);
   Coefficients c = RandomCoefficients(base, 2, 3);
   c.steps[1] = {StepFromBits(0x7f7f), 0.0f, 0, 0};
   c.levels[1].tangential.assign(c.levels[1].tangential.size(), 0);
@@ -233,18 +304,12 @@ TEST(ProgressiveDecoderTest, RespectsTheLimits) {
 }
 
 TEST(ProgressiveDecoderTest, TwelveLevelsInFewBytesStayWithinTheLimits) {
-  // Twelve levels of nothing on 200 triangles would be 3.4e9 triangles: a bomb of 100 bytes.
+  // Twelve levels of nothing on 200 triangles would be 3.4e9 triangles: a bomb of 19 bytes.
   const BaseMesh base = Torus(10, 10);
-  Bytes bytes = {'L', 'A', 'C', 1, 0x1c, 100, 0xc8, 0x01};
-  const RefinementBytes real = SmallStream(base, 1);
-  bytes.insert(bytes.end(), real.bytes.begin() + 8, real.bytes.begin() + 16);  // step and checksum of the base
-  bytes.insert(bytes.end(), 12 * 4 + 1 + 2, 0);  // steps, tags, checksum
+  Bytes bytes = HeaderWith(base, 1, {0, 0, 0, 0, 0, 0, 0x80, 0x3f});  // flags of twelve levels, first step
+  bytes[kLevelsAt] = 0x2c;
   FixHeaderChecksum(bytes.size(), &bytes);
-  for (uint8_t level = 1; level <= 12; ++level) {
-    Crc32 crc;
-    crc.Add(level);
-    for (const int byte : {0, crc.low16() & 0xff, crc.low16() >> 8}) bytes.push_back(static_cast<uint8_t>(byte));
-  }
+  ASSERT_EQ(bytes.size(), 19u);
   RefinementOptions options;
   options.limits = {100000, 200000};
   const RefinementResult result = Decode(base, bytes, bytes.size(), options);
@@ -267,9 +332,6 @@ TEST(ProgressiveDecoderTest, RefusesToRefineVerticesOfAbsurdValence) {
   fan.lattice.pop_back();
   EXPECT_TRUE(BuildTopologies(fan, 1).ok());
 }
-
-// Size of the header of a stream: that of level 1's part without its segment, which begins with its length.
-size_t HeaderSize(const Bytes& bytes) { return ReadRefinementHeader(bytes).value()->size; }
 
 TEST(TaggedStreamTest, EveryPrefixDecodesToItsLastCompleteLevel) {
   for (const auto& [base, tags] : TaggedBases()) {
@@ -324,6 +386,8 @@ TEST(TaggedStreamTest, RefusesTagsLongerThanTheBaseCanHave) {
   const size_t length_at = HeaderSize(bytes) - 2 - ReadRefinementHeader(bytes).value()->header.tags.size() - 1;
   bytes[length_at] = 26;  // 8 + 3 (4 + 4 * 2) / 2: just what may be
   EXPECT_THAT(Decode(base, bytes).refinement.message(), ::testing::Not(HasSubstr("bytes of tags")));
+  bytes[length_at] = 0;
+  EXPECT_THAT(Decode(base, bytes).refinement.message(), HasSubstr("(0 bytes of tags)"));
   bytes[length_at] = 27;
   EXPECT_THAT(Decode(base, bytes).refinement.message(), HasSubstr("27 bytes of tags"));
 }
@@ -373,9 +437,10 @@ TEST(TaggedStreamTest, RefusesBasesOfStillTrianglesOnly) {
   const BaseMesh base = Octahedron();
   Bytes bytes = SmallStream(base, 1).bytes;
   const size_t header_size = HeaderSize(bytes);
-  bytes[header_size - 3] = 1;                                       // a payload of one byte: zero, which is ones without end
-  bytes.insert(bytes.begin() + static_cast<ptrdiff_t>(header_size) - 2, 0);
-  FixHeaderChecksum(header_size + 1, &bytes);
+  bytes[kLevelsAt] |= 0x10;  // there are tags: a payload of one byte, zero, which is ones without end
+  const Bytes tags = {1, 0};
+  bytes.insert(bytes.begin() + static_cast<ptrdiff_t>(header_size) - 2, tags.begin(), tags.end());
+  FixHeaderChecksum(header_size + 2, &bytes);
   const RefinementResult result = Decode(base, bytes);
   EXPECT_EQ(result.refinement.code(), StatusCode::kInvalidData);
   EXPECT_THAT(result.refinement.message(), HasSubstr("nothing to refine"));
@@ -450,10 +515,8 @@ TEST(ReadRefinementInfoTest, TellsWhatTheHeaderSays) {
   const RefinementBytes refinement = SmallStream(base, 2);
   const RefinementInfo info = ReadRefinementInfo(refinement.bytes).value();
   EXPECT_EQ(info.num_levels, 2);
-  EXPECT_EQ(info.num_base_vertices, 200u);
-  EXPECT_EQ(info.num_base_triangles, 400u);
   EXPECT_EQ(info.base_step, base.step);
-  EXPECT_FALSE(ReadRefinementInfo(Span<const uint8_t>(refinement.bytes).First(20)).ok());
+  EXPECT_FALSE(ReadRefinementInfo(Span<const uint8_t>(refinement.bytes).First(12)).ok());
   EXPECT_FALSE(ReadRefinementInfo({}).ok());
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/step_forecast.h"
 #include "draco_ext/remesh/remeshing.h"
 
 namespace lacerta {
@@ -40,7 +41,8 @@ TEST(StepsForSlope, DoubleWithEveryLevelWithoutDetailAndGrowMoreSlowlyBelow) {
   const std::vector<LevelSteps> fine = StepsForSlope(target, scales, 1e-16);  // all of them do
   for (size_t i = 1; i < coarse.size(); ++i) {
     EXPECT_NEAR(coarse[i].normal_step / coarse[i - 1].normal_step, 2, 0.1);
-    EXPECT_NEAR(fine[i].normal_step / fine[i - 1].normal_step, 1.4, 0.03);
+    EXPECT_NEAR(fine[i].normal_step / fine[i - 1].normal_step, 1.2, 0.01);
+    EXPECT_EQ(StepToBits(fine[i].normal_step), NextStepBits(StepToBits(fine[i - 1].normal_step))) << "costs bytes in the header";
   }
 }
 

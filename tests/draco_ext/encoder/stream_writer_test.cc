@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <random>
 #include <utility>
 
+#include "common/step_forecast.h"
+#include "decoder/stream_reader.h"
 #include "decoder/synthesis.h"
 #include "draco_ext/encoder/test_streams.h"
 
@@ -32,6 +35,16 @@ std::vector<Vec3f> Synthesize(const BaseMesh& base, const Coefficients& c, const
     SynthesizeLevel(topologies[i], StencilTable(topologies[i]), c.steps[i], c.levels[i], &positions);
   }
   return positions;
+}
+
+// Steps as the default mode takes them.
+std::vector<LevelSteps> LawfulSteps(size_t num_levels) {
+  std::vector<LevelSteps> steps;
+  for (int bits = StepToBits(RoundStep(0.01f)); steps.size() < num_levels; bits = NextStepBits(bits)) {
+    const float normal = StepFromBits(static_cast<uint16_t>(bits));
+    steps.push_back({normal, 2 * normal, 0, 0});
+  }
+  return steps;
 }
 
 void ExpectRoundTrip(const BaseMesh& base, const Coefficients& c, const BaseTags& tags = {}) {
@@ -115,16 +128,69 @@ TEST(StreamWriterTest, NoLevelNoByte) {
 }
 
 TEST(StreamWriterTest, FixedOverheadIsSmall) {
-  // Five levels on 200 vertices: 45 bytes of header, 5 times length (1) and checksum (2), and zeros, which cost a few
-  // bits.
+  // Five levels by the default mode's law: 3 + 1 mark and version, 1 levels, 2 base step, 2 checksum of the base, 3 flags of levels, 2 first
+  // step, 2 checksum; 5 times length (1) and checksum (2), and zeros, which cost a few bits.
   const BaseMesh base = Torus(10, 20);
   Coefficients c = RandomCoefficients(base, 5, 1, 0.0);
-  c.steps[1].tangential_step = c.steps[0].tangential_step;
+  c.steps = LawfulSteps(5);
   const size_t size = WriteRefinement(base, c.steps, c.levels).value().bytes.size();
-  EXPECT_GE(size, 45u + 15u);
-  EXPECT_LE(size, 45u + 15u + 5 * 12u);
+  EXPECT_GE(size, 16u + 15u);
+  EXPECT_LE(size, 16u + 15u + 5 * 12u);
+  EXPECT_EQ(WriteRefinement(base, c.steps, c.levels, {}, BaseStepField::kLeftOut).value().bytes.size(), size - 2);
+  c.steps[2] = {};
+  c.steps[4] = {};
+  const RefinementBytes sparse = WriteRefinement(base, c.steps, c.levels).value();
+  EXPECT_EQ(sparse.part_sizes[2], 0u);
+  EXPECT_EQ(sparse.part_sizes[4], 0u);
+  EXPECT_LE(sparse.bytes.size(), size - 6);
+  ExpectRoundTrip(base, c);
   for (LevelSteps& steps : c.steps) steps = {};
-  EXPECT_EQ(WriteRefinement(base, c.steps, c.levels).value().bytes.size(), 45u - 5u + 15u);
+  EXPECT_EQ(WriteRefinement(base, c.steps, c.levels).value().bytes.size(), 16u);
+  ExpectRoundTrip(base, c);
+}
+
+TEST(StreamWriterTest, StepsOfEveryKindRoundTrip) {
+  const BaseMesh base = Octahedron();
+  std::mt19937 random(31);
+  const auto any_step = [&]() -> float {
+    const uint32_t kind = random() % 8;
+    if (kind < 2) return 0.0f;
+    if (kind == 2) return StepFromBits(0x7f7f);
+    if (kind == 3) return StepFromBits(0x0080);
+    return StepFromBits(static_cast<uint16_t>(0x0080 + random() % (kind == 4 ? 0x7f00 : 0x100) + (kind == 4 ? 0 : 0x3e00)));
+  };
+  for (int trial = 0; trial < 2000; ++trial) {
+    const int num_levels = 1 + static_cast<int>(random() % 3);
+    Coefficients c = RandomCoefficients(base, num_levels, 1, 0.0);
+    c.steps = LawfulSteps(static_cast<size_t>(num_levels));
+    for (LevelSteps& s : c.steps) {
+      if (random() % 2 == 0) s.normal_step = any_step();
+      if (random() % 2 == 0) s.tangential_step = any_step();
+      s.normal_bias = s.normal_step > 0 ? random() % 3 : 0;
+      s.tangential_bias = s.tangential_step > 0 ? random() % 3 : 0;
+    }
+    const Bytes bytes = WriteRefinement(base, c.steps, c.levels).value().bytes;
+    const std::vector<LevelSteps> read = ReadRefinementHeader(bytes).value()->header.steps;
+    ASSERT_EQ(read.size(), c.steps.size());
+    for (size_t i = 0; i < read.size(); ++i) {
+      EXPECT_EQ(read[i].normal_step, c.steps[i].normal_step) << trial;
+      EXPECT_EQ(read[i].tangential_step, c.steps[i].tangential_step) << trial;
+      EXPECT_EQ(read[i].normal_bias, c.steps[i].normal_bias) << trial;
+      EXPECT_EQ(read[i].tangential_bias, c.steps[i].tangential_bias) << trial;
+    }
+    ASSERT_EQ(DecodeRefinement(base, bytes, {}).value().level, num_levels) << trial;
+  }
+}
+
+TEST(StreamWriterTest, LevelsBeforeTheFirstCodedOneCostNoDifference) {
+  const BaseMesh base = Octahedron();
+  Coefficients c = RandomCoefficients(base, 2, 1, 0.0);
+  c.steps = LawfulSteps(2);
+  const size_t both = ReadRefinementHeader(WriteRefinement(base, c.steps, c.levels).value().bytes).value()->size;
+  c.steps[0] = {};
+  EXPECT_EQ(ReadRefinementHeader(WriteRefinement(base, c.steps, c.levels).value().bytes).value()->size, both);
+  c.steps[1].normal_step = 0;
+  EXPECT_EQ(ReadRefinementHeader(WriteRefinement(base, c.steps, c.levels).value().bytes).value()->size, both);
 }
 
 TEST(StreamWriterTest, RefusesWhatAStreamCannotHold) {
@@ -149,6 +215,9 @@ TEST(StreamWriterTest, RefusesWhatAStreamCannotHold) {
   EXPECT_THAT(refusal(c), HasSubstr("not rounded"));
   c.steps[0].normal_step = -0.5f;
   EXPECT_THAT(refusal(c), HasSubstr("not rounded"));
+  BaseMesh fine = base;
+  fine.step = 0.1f;
+  EXPECT_THAT(WriteRefinement(fine, good.steps, good.levels).status().message(), HasSubstr("8 significant bits"));
   c = good;
   c.steps[0].normal_bias = 16;
   EXPECT_THAT(refusal(c), HasSubstr("bias over 15"));
