@@ -20,10 +20,12 @@ namespace lacerta {
 namespace {
 
 using ::lacerta::testing::Coefficients;
+using ::lacerta::testing::LawfulSteps;
 using ::lacerta::testing::Octahedron;
 using ::lacerta::testing::OctahedronBesideStillSheets;
 using ::lacerta::testing::OctahedronWithCrease;
 using ::lacerta::testing::RandomCoefficients;
+using ::lacerta::testing::Silence;
 using ::lacerta::testing::Square;
 using ::lacerta::testing::SquareWithCorners;
 using ::lacerta::testing::TaggedBase;
@@ -35,7 +37,8 @@ struct Golden {
   TaggedBase tagged;
   int num_levels;
   uint32_t seed;
-  double scale;  // of the coefficients of level 1
+  double scale;         // of the coefficients of level 1
+  bool lawful = false;  // steps of the default mode, level 2 silent, the base step left out
 };
 
 std::string PathOf(const Golden& golden, const char* extension) {
@@ -101,8 +104,13 @@ class GoldenTest : public ::testing::TestWithParam<Golden> {};
 TEST_P(GoldenTest, DecodesAndIsWrittenAgain) {
   const Golden& golden = GetParam();
   const auto& [base, tags] = golden.tagged;
-  const Coefficients c = RandomCoefficients(base, golden.num_levels, golden.seed, golden.scale, tags);
-  const Bytes written = WriteRefinement(base, c.steps, c.levels, tags).value().bytes;
+  Coefficients c = RandomCoefficients(base, golden.num_levels, golden.seed, golden.scale, tags);
+  if (golden.lawful) {
+    c.steps = LawfulSteps(c.steps.size());
+    Silence(2, &c);
+  }
+  const BaseStepField base_step = golden.lawful ? BaseStepField::kLeftOut : BaseStepField::kWritten;
+  const Bytes written = WriteRefinement(base, c.steps, c.levels, tags, base_step).value().bytes;
   const RefinementResult again = DecodeRefinement(base, written, {}).value();
   if (std::getenv("LACERTA_REGENERATE_GOLDEN") != nullptr) {
     WriteFile(PathOf(golden, ".lac"), std::string(written.begin(), written.end()));
@@ -129,7 +137,8 @@ INSTANTIATE_TEST_SUITE_P(Version1, GoldenTest,
                                            Golden{"octahedron_crease", OctahedronWithCrease(), 3, 26, 4.0},
                                            Golden{"square_corners", SquareWithCorners(), 3, 27, 3.0},
                                            Golden{"octahedron_beside_still_sheets", OctahedronBesideStillSheets(), 3, 28, 4.0},
-                                           Golden{"three_sheets_joined", ThreeSheets(), 3, 29, 3.0}),
+                                           Golden{"three_sheets_joined", ThreeSheets(), 3, 29, 3.0},
+                                           Golden{"octahedron_silent_level", {Octahedron()}, 3, 30, 4.0, true}),
                          [](const auto& golden) { return std::string(golden.param.name); });
 
 }  // namespace

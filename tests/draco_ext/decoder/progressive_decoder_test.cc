@@ -22,6 +22,7 @@ using ::lacerta::testing::Coefficients;
 using ::lacerta::testing::Octahedron;
 using ::lacerta::testing::OctahedronBesideStillSheets;
 using ::lacerta::testing::RandomCoefficients;
+using ::lacerta::testing::Silence;
 using ::lacerta::testing::Square;
 using ::lacerta::testing::SquareWithCorners;
 using ::lacerta::testing::TaggedBases;
@@ -242,11 +243,7 @@ TEST(ProgressiveDecoderTest, RefusesFlagsAndDifferencesOfLevelsThatMakeNoSense) 
 TEST(ProgressiveDecoderTest, SilentLevelsAreCompleteAsSoonAsTheLevelBefore) {
   const BaseMesh base = Octahedron();
   Coefficients c = RandomCoefficients(base, 4, 11);
-  for (const size_t i : {size_t{0}, size_t{2}, size_t{3}}) {
-    c.steps[i] = {};
-    c.levels[i].normal.assign(c.levels[i].normal.size(), 0);
-    c.levels[i].tangential.assign(c.levels[i].tangential.size(), 0);
-  }
+  for (const size_t level : {1, 3, 4}) Silence(level, &c);
   const RefinementBytes refinement = WriteRefinement(base, c.steps, c.levels).value();
   const size_t header_size = HeaderSize(refinement.bytes);
   EXPECT_EQ(refinement.part_sizes[0], header_size);

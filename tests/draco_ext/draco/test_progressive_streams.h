@@ -27,9 +27,10 @@ struct ProgressiveStream {
 };
 
 // The refinement of a base by the coefficients that every hand-made stream holds.
-inline RefinementBytes MakeRefinement(const BaseMesh& base, int num_levels, const BaseTags& tags = {}) {
+inline RefinementBytes MakeRefinement(const BaseMesh& base, int num_levels, const BaseTags& tags = {},
+                                      BaseStepField base_step = BaseStepField::kWritten) {
   const Coefficients coefficients = RandomCoefficients(base, num_levels, 7, 6.0, tags);
-  return WriteRefinement(base, coefficients.steps, coefficients.levels, tags).value();
+  return WriteRefinement(base, coefficients.steps, coefficients.levels, tags, base_step).value();
 }
 
 // The finest level that MakeRefinement gives.
@@ -45,7 +46,8 @@ inline ProgressiveStream MakeProgressiveStream(const BaseMesh& base, int num_lev
   result.base = EncodeBaseMesh(base, coding).value();
   BaseTags tags;
   if (joined) tags.joined = FirstAtSamePoint(result.base.mesh.lattice);
-  RefinementBytes written = MakeRefinement(result.base.mesh, num_levels, tags);
+  RefinementBytes written = MakeRefinement(result.base.mesh, num_levels, tags,
+                                           coding == BaseCoding::kCompact ? BaseStepField::kLeftOut : BaseStepField::kWritten);
   result.part_sizes.push_back(result.base.stream.size());
   result.part_sizes.insert(result.part_sizes.end(), written.part_sizes.begin(), written.part_sizes.end());
   result.refinement = std::move(written.bytes);

@@ -9,7 +9,6 @@
 #include <random>
 #include <utility>
 
-#include "common/step_forecast.h"
 #include "decoder/stream_reader.h"
 #include "decoder/synthesis.h"
 #include "draco_ext/encoder/test_streams.h"
@@ -18,6 +17,7 @@ namespace lacerta {
 namespace {
 
 using ::lacerta::testing::Coefficients;
+using ::lacerta::testing::LawfulSteps;
 using ::lacerta::testing::Octahedron;
 using ::lacerta::testing::RandomCoefficients;
 using ::lacerta::testing::Square;
@@ -35,16 +35,6 @@ std::vector<Vec3f> Synthesize(const BaseMesh& base, const Coefficients& c, const
     SynthesizeLevel(topologies[i], StencilTable(topologies[i]), c.steps[i], c.levels[i], &positions);
   }
   return positions;
-}
-
-// Steps as the default mode takes them.
-std::vector<LevelSteps> LawfulSteps(size_t num_levels) {
-  std::vector<LevelSteps> steps;
-  for (int bits = StepToBits(RoundStep(0.01f)); steps.size() < num_levels; bits = NextStepBits(bits)) {
-    const float normal = StepFromBits(static_cast<uint16_t>(bits));
-    steps.push_back({normal, 2 * normal, 0, 0});
-  }
-  return steps;
 }
 
 void ExpectRoundTrip(const BaseMesh& base, const Coefficients& c, const BaseTags& tags = {}) {
@@ -166,8 +156,8 @@ TEST(StreamWriterTest, StepsOfEveryKindRoundTrip) {
     for (LevelSteps& s : c.steps) {
       if (random() % 2 == 0) s.normal_step = any_step();
       if (random() % 2 == 0) s.tangential_step = any_step();
-      s.normal_bias = s.normal_step > 0 ? random() % 3 : 0;
-      s.tangential_bias = s.tangential_step > 0 ? random() % 3 : 0;
+      s.normal_bias = static_cast<uint8_t>(s.normal_step > 0 ? random() % 3 : 0);
+      s.tangential_bias = static_cast<uint8_t>(s.tangential_step > 0 ? random() % 3 : 0);
     }
     const Bytes bytes = WriteRefinement(base, c.steps, c.levels).value().bytes;
     const std::vector<LevelSteps> read = ReadRefinementHeader(bytes).value()->header.steps;

@@ -11,6 +11,7 @@
 
 #include "common/base_tags.h"
 #include "common/coefficient_sets.h"
+#include "common/step_forecast.h"
 #include "common/subdivision.h"
 #include "lacerta/decoder.h"
 
@@ -125,6 +126,24 @@ inline Coefficients RandomCoefficients(const BaseMesh& base, int num_levels, uin
     t = Refine(t);
   }
   return result;
+}
+
+// Steps as the default mode takes them.
+inline std::vector<LevelSteps> LawfulSteps(size_t num_levels) {
+  std::vector<LevelSteps> steps;
+  for (int bits = StepToBits(RoundStep(0.01f)); steps.size() < num_levels; bits = NextStepBits(bits)) {
+    const float normal = StepFromBits(static_cast<uint16_t>(bits));
+    steps.push_back({normal, 2 * normal, 0, 0});
+  }
+  return steps;
+}
+
+// Without coefficients in one of the levels.
+inline void Silence(size_t level, Coefficients* c) {
+  c->steps[level - 1] = {};
+  QuantizedLevel& q = c->levels[level - 1];
+  q.normal.assign(q.normal.size(), 0);
+  q.tangential.assign(q.tangential.size(), 0);
 }
 
 }  // namespace lacerta::testing

@@ -60,6 +60,19 @@ TEST(Progressive, GathersTheSegmentsOfAStream) {
   EXPECT_TRUE(GatherStream(document, progressive, 1).value().complete);
 }
 
+TEST(Progressive, LevelsWithoutCoefficientsHaveEmptySegments) {
+  GltfDocument document = Sample();
+  document.json["extensions"][kProgressiveName]["segments"]["byteLength"] = {3, 2, 0, 5};
+  const auto progressive = ParseProgressive(document);
+  ASSERT_TRUE(progressive.ok()) << progressive.status().message();
+  const GatheredStream second = GatherStream(document, progressive.value(), 1).value();
+  EXPECT_THAT(second.bytes, ::testing::ElementsAre(3, 4));
+  EXPECT_TRUE(second.complete);
+  EXPECT_THAT(GatherStream(document, progressive.value(), 0).value().bytes, ::testing::ElementsAre(0, 1, 2, 5, 6, 7, 8, 9));
+  document.buffers[0].resize(5);  // cut just there
+  EXPECT_TRUE(GatherStream(document, progressive.value(), 1).value().complete);
+}
+
 TEST(Progressive, NamesWhatIsWrong) {
   EXPECT_THAT(MessageAfter("/version", 2), AllOf(HasSubstr("version 2"), HasSubstr(kProgressiveName)));
   EXPECT_THAT(MessageAfter("/data", "x"), HasSubstr("data"));

@@ -220,6 +220,7 @@ TEST(Describe, BareStreamsAgreeWithTheirReport) {
     for (size_t i = 0; i < info.value().levels.size(); ++i) {
       EXPECT_EQ(info.value().levels[i].vertices, encoded.value().report.levels[i].vertices);
       EXPECT_EQ(info.value().levels[i].triangles, encoded.value().report.levels[i].triangles);
+      EXPECT_EQ(info.value().levels[i].bytes, encoded.value().report.levels[i].bytes);
     }
     EXPECT_EQ(info.value().levels.back().bytes, encoded.value().stream.size());
   }
