@@ -11,6 +11,7 @@
 
 #include "baselines/coders.h"
 #include "baselines/remeshes.h"
+#include "baselines/single_rate.h"
 #include "baselines/transform.h"
 #include "draco/normal_mesh_candidate.h"
 #include "lacerta/clean.h"
@@ -93,6 +94,19 @@ class Comparison {
     return Status();
   }
 
+  // The original mesh at single rates.
+  Status SingleRates() const {
+    if (!coder_.empty() && coder_ != "tg") return Status();
+    for (const int bits : {6, 7, 8, 9, 10, 11, 12}) {
+      LACERTA_ASSIGN_OR_RETURN(const SingleRateMesh coded, CodeSingleRate(input_, bits));
+      LACERTA_ASSIGN_OR_RETURN(const double psnr, PsnrOf(coded.mesh));
+      std::printf("%s,tg,none,%d,%zu,%.5f,%.4f,%.3f,0,0,0\n", name_.c_str(), bits, coded.bytes,
+                  8.0 * static_cast<double>(coded.bytes) / static_cast<double>(input_.positions.size()), psnr,
+                  kMaxPsnr);
+    }
+    return Status();
+  }
+
  private:
   StatusOr<double> PsnrOf(const TriangleMesh& mesh) const {
     LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance d,
@@ -152,6 +166,7 @@ Status Compare(const std::string& path, const Options& options) {
   LACERTA_ASSIGN_OR_RETURN(const Decomposition maps_parts, loop->Analyze(maps));
   LACERTA_RETURN_IF_ERROR(comparison.Curve({"pgc", "maps", maps, first_threshold, threshold_ratio},
                                            zerotrees(*loop, maps_parts, kTangentialScale)));
+  LACERTA_RETURN_IF_ERROR(comparison.SingleRates());
   return comparison.Curve({"maps", "maps", maps, first_lambda, lambda_ratio},
                           [&](double lambda) { return CodeWithModel(remeshes.base, *loop, maps_parts, lambda); });
 }
