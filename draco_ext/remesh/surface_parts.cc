@@ -1,6 +1,9 @@
 #include "remesh/surface_parts.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "remesh/features.h"
@@ -78,6 +81,58 @@ void PinCopies(size_t num_sources, SurfaceParts* parts) {
   }
 }
 
+// A part of a border from one corner to the next.
+struct BorderArc {
+  uint32_t first = kNone, last = kNone;  // corners
+  uint32_t middle = kNone;               // a vertex halfway, or kNone where it is a single edge
+};
+
+// edges_at: #V x 2, the border edges of each vertex. Marks the edges of the arc as seen.
+BorderArc FollowBorder(const Topology& topology, const std::vector<std::array<uint32_t, 2>>& edges_at, uint32_t corner, uint32_t edge,
+                       std::vector<uint8_t>* seen) {
+  std::vector<uint32_t> inside;
+  uint32_t v = corner;
+  for (;;) {
+    (*seen)[edge] = 1;
+    v = topology.edges[edge][0] == v ? topology.edges[edge][1] : topology.edges[edge][0];
+    if (topology.role[v] == CurveRole::kCorner) break;
+    inside.push_back(v);
+    edge = edges_at[v][0] == edge ? edges_at[v][1] : edges_at[v][0];
+  }
+  return {corner, v, inside.empty() ? kNone : inside[inside.size() / 2]};
+}
+
+// Borders that share only their ends (two holes that touch at two points) are different curves. A base that had a single edge for each
+// would join them, as edges are joined by the places of their ends: a corner in the middle of each keeps them apart.
+void PinBordersWithCommonEnds(SurfaceParts* parts) {
+  Topology& topology = parts->topology;
+  std::vector<std::array<uint32_t, 2>> edges_at(topology.num_vertices, {kNone, kNone});
+  for (uint32_t e = 0; e < topology.num_edges(); ++e) {
+    if (!topology.is_border(e)) continue;
+    for (const uint32_t v : topology.edges[e]) edges_at[v][edges_at[v][0] != kNone] = e;
+  }
+  std::map<std::pair<uint32_t, uint32_t>, std::vector<BorderArc>> arcs;  // by the sources of their ends, the smaller first
+  std::vector<uint8_t> seen(topology.num_edges(), 0);
+  for (uint32_t v = 0; v < topology.num_vertices; ++v) {
+    if (topology.role[v] != CurveRole::kCorner) continue;
+    for (const uint32_t e : edges_at[v]) {
+      if (e == kNone || seen[e]) continue;
+      const BorderArc arc = FollowBorder(topology, edges_at, v, e, &seen);
+      arcs[std::minmax(parts->source_vertex[v], parts->source_vertex[arc.last])].push_back(arc);
+    }
+  }
+  for (const auto& [ends, between] : arcs) {
+    const auto is_elsewhere = [&](const BorderArc& arc) {
+      return std::minmax(arc.first, arc.last) != std::minmax(between[0].first, between[0].last);
+    };
+    // Between the very same vertices a base has one edge at most.
+    if (std::none_of(between.begin(), between.end(), is_elsewhere)) continue;
+    for (const BorderArc& arc : between) {
+      if (arc.middle != kNone) topology.role[arc.middle] = CurveRole::kCorner;
+    }
+  }
+}
+
 }  // namespace
 
 SurfaceParts SplitSurface(const TriangleMesh& cleaned, const SurfacePartsOptions& options) {
@@ -99,6 +154,7 @@ SurfaceParts SplitSurface(const TriangleMesh& cleaned, const SurfacePartsOptions
   }
   parts.topology = TopologyWithFeatures(parts.refined, component, whole.components.size());
   PinCopies(cleaned.positions.size(), &parts);
+  PinBordersWithCommonEnds(&parts);
   return parts;
 }
 

@@ -1,10 +1,16 @@
-// Bases that are made finer where the normal mesh over them is reversed.
+// Bases that are made finer where the normal mesh over them is reversed, and borders that share their ends.
 #include "draco/normal_mesh_candidate.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+
 #include "draco_ext/remesh/remeshing.h"
+#include "lacerta/clean.h"
+#include "lacerta/surface_distance.h"
 #include "remesh/reversal.h"
+#include "remesh/surface_parts.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
@@ -38,6 +44,48 @@ TEST(NormalMeshCandidate, SplitsBaseFacesThatFoldOverWhatTheyStandFor) {
     EXPECT_GT(made.num_base_vertices, asked) << "nothing was reversed";
     EXPECT_LE(made.num_base_vertices, asked + 8);
   }
+}
+
+// Two sheets `gap` apart that bend away from each other: at no gap they touch at two points, with a hole like an eye between.
+TriangleMesh Eye(float gap) {
+  const TriangleMesh grid = shapes::GridWithBorder(20, 20);
+  TriangleMesh eye;
+  for (const float side : {1.0f, -1.0f}) {
+    const auto first = static_cast<uint32_t>(eye.positions.size());
+    for (const Vec3f& p : grid.positions) {
+      const float lid = 0.25f * std::sin(3.14159265f * p.x) * (p.x > 0 && p.x < 1);
+      eye.positions.push_back({p.x, side * (p.y + lid * (1 - p.y) + gap / 2), 0.2f * p.y * p.y});
+    }
+    for (Triangle t : grid.triangles) {
+      if (side < 0) std::swap(t[1], t[2]);
+      eye.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+  }
+  return Clean(eye).value().mesh;
+}
+
+// Both lids run between the same two points, but are not one curve, also not where a base has a single edge for each.
+TEST(NormalMeshCandidate, BordersThatShareOnlyTheirEndsAreNotJoined) {
+  double psnr[2] = {};
+  for (const bool touches : {false, true}) {
+    const TriangleMesh mesh = Eye(touches ? 0.0f : 0.01f);
+    const SurfaceParts parts = SplitSurface(mesh);
+    EXPECT_EQ(parts.report.split_vertices, touches ? 2u : 0u);
+    const CollapseHistory history = Decimate(parts.refined, parts.topology, {8, 12, 0.2});
+    const InputSurface surface(parts.refined, parts.topology);
+    const NormalMeshCandidate candidate = NormalMeshCandidate::Create({surface, history, {}}, 8, 4).value();
+    EXPECT_LE(candidate.num_base_vertices(), 12u);
+    const SemiRegularMesh& base = candidate.normal_mesh().mesh;
+    const Topology topology = BuildTopology(base.num_base_vertices, base.base_triangles, base.tags).value();
+    EXPECT_EQ(base.tags.joined.empty(), !touches);
+    for (uint32_t e = 0; e < topology.num_edges(); ++e) EXPECT_FALSE(topology.is_copy(e)) << "edge " << e;
+    const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(mesh).value();
+    constexpr double kLambda = 1e-10;  // of a stream near 83 dB
+    const CodedStream coded = candidate.Code(kLambda, kLambda, EncodeMode::kDefault).value();
+    psnr[touches] = Psnr(meter.Measure(coded.FinestMesh()).value().Rms(), meter.diagonal());
+  }
+  EXPECT_NEAR(psnr[1], psnr[0], 3.0);
+  EXPECT_NEAR(psnr[0], 83.0, 5.0);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "draco_ext/remesh/remeshing.h"
 
@@ -93,6 +94,34 @@ TEST(SplitSurface, CopiesOfACutAreCorners) {
   EXPECT_EQ(num_copied, parts.report.split_vertices);
   EXPECT_GE(num_copied, 7u);
   EXPECT_LE(num_copied, 9u);  // of 8 edges in a row, perhaps without its ends
+}
+
+// Two sheets in one plane that touch at the ends of a row of vertices and are apart between them, as far as `apart` says.
+TriangleMesh SheetsThatTouchTwice(float apart) {
+  const TriangleMesh sheet = shapes::GridWithBorder(20, 20);
+  const auto side = [&](float sign) {
+    TriangleMesh mesh = sheet;
+    for (Vec3f& p : mesh.positions) p.y = sign * (p.y + (p.x > 0 && p.x < 1 ? apart : 0.0f));
+    for (Triangle& t : mesh.triangles) {
+      if (sign < 0) std::swap(t[1], t[2]);
+    }
+    return mesh;
+  };
+  return Clean(Together(side(1), side(-1))).value().mesh;
+}
+
+TEST(SplitSurface, BordersThatShareOnlyTheirEndsGetCornersBetween) {
+  const SurfaceParts parts = SplitSurface(SheetsThatTouchTwice(0.02f));
+  ASSERT_EQ(parts.report.split_vertices, 2u);
+  std::vector<float> middles;
+  for (uint32_t v = 0; v < parts.topology.num_vertices; ++v) {
+    const Vec3f& p = parts.refined.positions[v];
+    if (parts.topology.role[v] == CurveRole::kCorner && p.x > 0.25f && p.x < 0.75f) middles.push_back(p.y);
+  }
+  std::sort(middles.begin(), middles.end());
+  ASSERT_EQ(middles.size(), 2u) << "of the two borders between both points, and not of the long ways round, which have corners";
+  EXPECT_FLOAT_EQ(middles[0], -0.02f);
+  EXPECT_FLOAT_EQ(middles[1], 0.02f);
 }
 
 TEST(SplitSurface, TakesEveryShape) {
