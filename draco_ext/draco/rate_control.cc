@@ -1,7 +1,5 @@
 #include "draco/rate_control.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -12,6 +10,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "draco/for_each_candidate.h"
 
 namespace lacerta {
 namespace {
@@ -46,18 +46,6 @@ struct Rung {
 
 // Candidates that are taken to the target at a time, and in all. More are not kept: each is as large as the input.
 constexpr size_t kAtATime = 2, kMost = 4;
-
-// Work on each of several candidates: in parallel, but for surfaces so large that their memory counts for more. What can run in
-// parallel within a candidate does so anyway.
-template <typename Work>
-void ForEachCandidate(double num_input_vertices, size_t count, const Work& work) {
-  constexpr double kLarge = 250'000;
-  if (num_input_vertices < kLarge) {
-    tbb::parallel_for(size_t{0}, count, work);
-  } else {
-    for (size_t i = 0; i < count; ++i) work(i);
-  }
-}
 
 class Ladder {
  public:

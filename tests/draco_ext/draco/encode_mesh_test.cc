@@ -134,7 +134,9 @@ TEST(EncodeMeshTest, ReportsWhatTheStreamHolds) {
     const DecodedMesh decoded = DecodeMesh(encoded.stream, options).value();
     EXPECT_EQ(decoded.mesh.positions.size(), report.levels[level].vertices);
     EXPECT_EQ(decoded.mesh.triangles.size(), report.levels[level].triangles);
-    const double noise = level + 1 < report.levels.size() ? 5e-2 : 2e-2;  // coarse levels are measured with fewer samples
+    // Coarse levels are measured with 50,000 samples, and here with 200,000. That is the error of few samples: at level 2 six seeds say
+    // 48.97 to 49.00 dB with 50,000, 48.95 to 48.96 with 200,000, and two 48.964 with 8,000,000.
+    const double noise = level + 1 < report.levels.size() ? 5e-2 : 2e-2;
     EXPECT_NEAR(DecodedPsnr(mesh, encoded.stream, static_cast<int>(level)), report.levels[level].psnr, noise);
   }
   EXPECT_GT(report.remesh_psnr, report.levels.back().psnr);

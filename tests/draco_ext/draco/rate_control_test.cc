@@ -4,10 +4,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <set>
+#include <thread>
 #include <vector>
 
+#include "draco/for_each_candidate.h"
 #include "draco_ext/remesh/remeshing.h"
 #include "shapes/shapes.h"
 
@@ -64,6 +72,30 @@ TEST(CodeAtTargetTest, BasesGrowWithTheQualityAskedFor) {
   EXPECT_TRUE(fine.measured.meets_target);
   EXPECT_LE(coarse.measured.stream.decoded.num_base_vertices, fine.measured.stream.decoded.num_base_vertices);
   EXPECT_GE(4 * fine.measured.stream.size(), 5 * coarse.measured.stream.size());
+}
+
+// Each keeps to itself, so this is all that the size of the input may change.
+TEST(ForEachCandidateTest, LargeInputsAreWorkedOnOneByOne) {
+  for (const double num_vertices : {0.999 * kOneCandidateAtATime, kOneCandidateAtATime}) {
+    std::vector<size_t> order;
+    std::vector<int> calls(20, 0);
+    std::mutex mutex;
+    std::set<std::thread::id> threads;
+    ForEachCandidate(num_vertices, calls.size(), [&](size_t i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));  // for another thread to take its share
+      const std::lock_guard<std::mutex> lock(mutex);
+      ++calls[i];
+      order.push_back(i);
+      threads.insert(std::this_thread::get_id());
+    });
+    EXPECT_THAT(calls, ::testing::Each(1));
+    if (num_vertices < kOneCandidateAtATime) {
+      EXPECT_EQ(threads.size() > 1, tbb::this_task_arena::max_concurrency() > 1);
+    } else {
+      EXPECT_EQ(threads.size(), 1u);
+      EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+    }
+  }
 }
 
 TEST(CodeAtTargetTest, ReportsStages) {

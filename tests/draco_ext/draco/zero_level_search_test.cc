@@ -117,6 +117,29 @@ TEST_F(ZeroLevelSearchTest, SimplerOnlyWhereItBeatsWhatThereIs) {
   EXPECT_TRUE(SimplerIfBetter(mesh_, SimplificationSequence(mesh_), meter_, target, coded).value().has_value());
 }
 
+// Of large meshes one look tells whether a simplified one is worth trying: not at a fifth of the bytes it takes, never where it is better.
+TEST_F(ZeroLevelSearchTest, LargeMeshesAreNotDismissedWhereASimplerOneIsBetter) {
+  for (const TriangleMesh& mesh : {shapes::BumpySphere(5, 0.2f), shapes::Torus(160, 64)}) {
+    const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(mesh).value();
+    const SimplificationSequence sequence(mesh);
+    const ResolvedTarget target{false, 0, 55};
+    const ZeroLevelStream least = CodeZeroLevel(mesh, meter, target).value();
+    ASSERT_TRUE(least.meets_target);
+    ASSERT_LT(8 * least.stream.size(), mesh.triangles.size()) << "too fine to be judged by one look";
+    MeasuredStream coded;
+    coded.meets_target = true;
+    coded.psnr = 55.1;
+    const auto simpler = [&](double share) {
+      coded.stream.base = Bytes(static_cast<size_t>(share * static_cast<double>(least.stream.size())));
+      return SimplerIfBetter(mesh, sequence, meter, target, coded).value();
+    };
+    const std::optional<ZeroLevelStream> better = simpler(1.3);
+    ASSERT_TRUE(better.has_value());
+    EXPECT_EQ(better->stream, least.stream);
+    EXPECT_FALSE(simpler(0.2).has_value());
+  }
+}
+
 TEST_F(ZeroLevelSearchTest, BeatsTheBestKnownOnRealMeshes) {
   struct Case {
     const char* name;
