@@ -103,7 +103,7 @@ BorderArc FollowBorder(const Topology& topology, const std::vector<std::array<ui
 }
 
 // Borders that share only their ends (two holes that touch at two points) are different curves. A base that had a single edge for each
-// would join them, as edges are joined by the places of their ends: a corner in the middle of each keeps them apart.
+// would join them, as edges are joined by the places of their ends: a corner in the middle of all but one keeps them apart.
 void PinBordersWithCommonEnds(SurfaceParts* parts) {
   Topology& topology = parts->topology;
   std::vector<std::array<uint32_t, 2>> edges_at(topology.num_vertices, {kNone, kNone});
@@ -122,13 +122,12 @@ void PinBordersWithCommonEnds(SurfaceParts* parts) {
     }
   }
   for (const auto& [ends, between] : arcs) {
-    const auto is_elsewhere = [&](const BorderArc& arc) {
-      return std::minmax(arc.first, arc.last) != std::minmax(between[0].first, between[0].last);
-    };
-    // Between the very same vertices a base has one edge at most.
-    if (std::none_of(between.begin(), between.end(), is_elsewhere)) continue;
+    // One may be a single edge: one that is, or else the first. Nor can others between its very same vertices be one too.
+    auto single = std::find_if(between.begin(), between.end(), [](const BorderArc& arc) { return arc.middle == kNone; });
+    if (single == between.end()) single = between.begin();
     for (const BorderArc& arc : between) {
-      if (arc.middle != kNone) topology.role[arc.middle] = CurveRole::kCorner;
+      const bool has_same_ends = std::minmax(arc.first, arc.last) == std::minmax(single->first, single->last);
+      if (arc.middle != kNone && !has_same_ends) topology.role[arc.middle] = CurveRole::kCorner;
     }
   }
 }

@@ -15,8 +15,8 @@ struct SurfaceParts {
   // Components worth a base mesh and levels, as an oriented manifold with border; may be empty.
   TriangleMesh refined;
   // Of `refined`, with its creases. Corners are also the vertices at which the surface was cut, so that both sides of a cut keep
-  // the same points, but not those inside of double sheets; and one in the middle of each of several borders that share both
-  // ends and nothing else, so that no base takes them for one.
+  // the same points, but not those inside of double sheets; and one in the middle of all but one of the borders that share
+  // both ends and nothing else, so that no base takes them for one.
   Topology topology;
   std::vector<uint32_t> source_vertex;  // #V of refined, the vertex of the cleaned input: equal for the copies of a cut
   // All other components, as they are; may be empty.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -110,7 +111,7 @@ TriangleMesh SheetsThatTouchTwice(float apart) {
   return Clean(Together(side(1), side(-1))).value().mesh;
 }
 
-TEST(SplitSurface, BordersThatShareOnlyTheirEndsGetCornersBetween) {
+TEST(SplitSurface, BordersThatShareOnlyTheirEndsGetACornerBetween) {
   const SurfaceParts parts = SplitSurface(SheetsThatTouchTwice(0.02f));
   ASSERT_EQ(parts.report.split_vertices, 2u);
   std::vector<float> middles;
@@ -118,10 +119,8 @@ TEST(SplitSurface, BordersThatShareOnlyTheirEndsGetCornersBetween) {
     const Vec3f& p = parts.refined.positions[v];
     if (parts.topology.role[v] == CurveRole::kCorner && p.x > 0.25f && p.x < 0.75f) middles.push_back(p.y);
   }
-  std::sort(middles.begin(), middles.end());
-  ASSERT_EQ(middles.size(), 2u) << "of the two borders between both points, and not of the long ways round, which have corners";
-  EXPECT_FLOAT_EQ(middles[0], -0.02f);
-  EXPECT_FLOAT_EQ(middles[1], 0.02f);
+  ASSERT_EQ(middles.size(), 1u) << "of one of the two borders between both points, and not of the long ways round, which have corners";
+  EXPECT_FLOAT_EQ(std::fabs(middles[0]), 0.02f);
 }
 
 TEST(SplitSurface, TakesEveryShape) {
