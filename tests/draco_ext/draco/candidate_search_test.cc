@@ -67,22 +67,6 @@ TEST_F(CandidateSearchTest, ScoreForesees) {
   EXPECT_NEAR(-minus_psnr, PsnrOf(by_bytes.Meet().value().stream.FinestMesh()), 1.5);
 }
 
-// What a level would add is counted before there is one: the score is that of a better remesh, by as much as that is worth.
-TEST_F(CandidateSearchTest, ScoreCountsTheRemeshThatIsAssumed) {
-  const auto gain_of = [&](const ResolvedTarget& target, double decibels) {
-    CandidateSearch plain = Search(target), assuming = Search(target);
-    assuming.AssumeRemesh(remesh_psnr_ + decibels);
-    return plain.Score().value() - assuming.Score().value();
-  };
-  const ResolvedTarget psnr{false, 0, remesh_psnr_ - 3}, bytes{true, 3000, 0};
-  for (const ResolvedTarget& target : {psnr, bytes}) EXPECT_EQ(gain_of(target, 0), 0);
-  EXPECT_GT(gain_of(psnr, 1), 0.01);  // of ln(bytes): the remesh is half of the squared error
-  EXPECT_GT(gain_of(psnr, 2), gain_of(psnr, 1));
-  EXPECT_LT(gain_of(psnr, 2), 0.1);
-  EXPECT_NEAR(gain_of(bytes, 1), 0.95, 0.2);  // so many bytes that it is nearly all of the error
-  EXPECT_NEAR(gain_of(bytes, 2), 1.9, 0.3);
-}
-
 TEST_F(CandidateSearchTest, SaysWhereTheRemeshIsTheLimit) {
   CandidateSearch search = Search({false, 0, remesh_psnr_ + 5});
   const MeasuredStream stream = search.Meet().value();
