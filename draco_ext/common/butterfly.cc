@@ -43,13 +43,67 @@ uint32_t NextCurveEdge(const Topology& t, uint32_t edge, uint32_t vertex) {
 
 }  // namespace butterfly_internal
 
-std::vector<Vec3f> PredictMidpoints(const Topology& topology, const StencilTable& table, const std::vector<Vec3f>& positions) {
-  std::vector<Vec3f> midpoints(topology.num_edges());
-  for (uint32_t e = 0; e < topology.num_edges(); ++e) {
+namespace {
+
+// Whether the eight-point stencil of `edge` needs no case of its own: no curve at either end, and no extraordinary vertex.
+bool IsPlain(const Topology& t, uint32_t edge) {
+  for (const uint32_t v : t.edges[edge]) {
+    if (t.role[v] != CurveRole::kSmooth || IsExtraordinary(t, v)) return false;
+  }
+  return true;
+}
+
+// For every corner of a face the vertex on the other side of its opposite edge; kNone beyond the border: #F.
+std::vector<Triangle> VerticesAcross(const Topology& t) {
+  std::vector<Triangle> across(t.num_faces());
+  for (uint32_t e = 0; e < t.num_edges(); ++e) {
+    const auto& [f, g] = t.edge_faces[e];
+    const int i = EdgeCorner(t, f, e);
+    if (g == kNone) {
+      across[f][i] = kNone;
+      continue;
+    }
+    const int k = EdgeCorner(t, g, e);
+    across[f][i] = t.triangles[g][k];
+    across[g][k] = t.triangles[f][i];
+  }
+  return across;
+}
+
+// What VisitRegular adds up at an edge that IsPlain, in the same order: nearly all edges of fine levels are.
+Vec3f PredictPlain(const Topology& t, const std::vector<Triangle>& across, const Vec3f* positions, uint32_t edge) {
+  constexpr int kNext[3] = {1, 2, 0}, kPrevious[3] = {2, 0, 1};
+  const auto& [a, b] = t.edges[edge];
+  Vec3f sum;
+  sum += positions[a] * 0.5f;
+  sum += positions[b] * 0.5f;
+  for (const uint32_t face : t.edge_faces[edge]) {
+    const int corner = EdgeCorner(t, face, edge);
+    sum += positions[t.triangles[face][corner]] * 0.125f;
+    sum += positions[across[face][kNext[corner]]] * -0.0625f;
+    sum += positions[across[face][kPrevious[corner]]] * -0.0625f;
+  }
+  return sum;
+}
+
+}  // namespace
+
+void PredictMidpoints(const Topology& t, const StencilTable& table, const Vec3f* positions, Vec3f* midpoints) {
+  const std::vector<Triangle> across = VerticesAcross(t);
+  for (uint32_t e = 0; e < t.num_edges(); ++e) {
+    if (IsPlain(t, e)) {
+      midpoints[e] = PredictPlain(t, across, positions, e);
+      continue;
+    }
     Vec3f sum;
-    VisitStencil(topology, table, e, [&](uint32_t v, float weight) { sum += positions[v] * weight; });
+    VisitStencil(t, table, e, [&](uint32_t v, float weight) { sum += positions[v] * weight; });
     midpoints[e] = sum;
   }
+}
+
+std::vector<Vec3f> PredictMidpoints(const Topology& topology, const StencilTable& table, const std::vector<Vec3f>& positions) {
+  std::vector<Vec3f> midpoints(topology.num_edges());
+  PredictMidpoints(topology, table, positions.data(), midpoints.data());
   return midpoints;
 }
 

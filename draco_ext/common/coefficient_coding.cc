@@ -19,21 +19,21 @@ void CodedNeighbors::Add(uint32_t edge, int32_t value) {
   const int32_t counted = std::clamp(value, -kMaxCountedMagnitude, kMaxCountedMagnitude);
   values_[edge] = counted;
   for (const uint32_t v : topology_.edges[edge]) {
-    vertex_sum_[v] += Magnitude(counted);
-    ++vertex_count_[v];
+    around_[v].sum += Magnitude(counted);
+    ++around_[v].count;
   }
 }
 
 CoefficientContext CodedNeighbors::ContextOf(uint32_t edge, const Forecast* forecast) const {
   // Edges around both ends weigh 1, and those in the faces of `edge`, which are among them, 2.
   const auto& [a, b] = topology_.edges[edge];
-  uint32_t sum = vertex_sum_[a] + vertex_sum_[b];
-  uint32_t weight = vertex_count_[a] + vertex_count_[b];
+  uint32_t sum = around_[a].sum + around_[b].sum;
+  uint32_t weight = around_[a].count + around_[b].count;
   int32_t signed_sum = 0;
   for (const uint32_t face : topology_.edge_faces[edge]) {
     if (face == kNone) continue;
     for (const uint32_t side : topology_.face_edges[face]) {
-      if (side >= edge || topology_.is_copy(side)) continue;
+      if (side >= edge || (has_copies_ && topology_.is_copy(side))) continue;
       sum += Magnitude(values_[side]);
       signed_sum += values_[side];
       ++weight;
@@ -45,7 +45,7 @@ CoefficientContext CodedNeighbors::ContextOf(uint32_t edge, const Forecast* fore
     weight += kForecastWeight;
   }
   CoefficientContext context;
-  if (weight > 0) context.activity = ActivityClass(static_cast<uint32_t>((sixteenths + weight / 2) / weight));
+  if (sixteenths > 0) context.activity = ActivityClass(static_cast<uint32_t>((sixteenths + weight / 2) / weight));
   const int32_t sign = 3 * std::clamp(signed_sum, -2, 2) + (forecast != nullptr ? forecast->sign : 0);
   context.sign_class = static_cast<int>(Magnitude(sign));
   context.expect_negative = sign < 0;
@@ -76,12 +76,18 @@ std::vector<Forecast> CodedNeighbors::ForecastFiner() const {
   return finer;
 }
 
-Forecast Rescale(const Forecast& forecast, float from, float to) {
+ForecastScale::ForecastScale(float from, float to) {
   // A step is (128 + low 7 bits) * 2^(exponent field - 134).
   const uint32_t from_bits = StepToBits(from), to_bits = StepToBits(to);
-  const uint64_t ratio = uint64_t{forecast.magnitude} * (128 + (from_bits & 127)) * 256 / (128 + (to_bits & 127));
-  const int up = std::clamp(static_cast<int>(from_bits >> 7) - static_cast<int>(to_bits >> 7), -40, 24);
-  const uint64_t scaled = up >= 0 ? (ratio << up) >> 8 : ratio >> (8 - up);
+  from_significand_ = 128 + (from_bits & 127);
+  to_significand_ = 128 + (to_bits & 127);
+  up_ = std::clamp(static_cast<int>(from_bits >> 7) - static_cast<int>(to_bits >> 7), -40, 24);
+}
+
+Forecast ForecastScale::operator()(const Forecast& forecast) const {
+  if (forecast.magnitude == 0) return forecast;  // most of a fine level
+  const uint64_t ratio = uint64_t{forecast.magnitude} * from_significand_ * 256 / to_significand_;
+  const uint64_t scaled = up_ >= 0 ? (ratio << up_) >> 8 : ratio >> (8 - up_);
   return {static_cast<uint32_t>(std::min<uint64_t>(scaled, kMaxForecast)), forecast.sign};
 }
 

@@ -29,6 +29,7 @@ struct CodingState {
   SetModels normal{kNormalPriors}, tangential1{kTangentialPriors}, tangential2{kTangentialPriors};
   std::vector<Forecast> normal_forecasts, tangential_forecasts;  // #E each
   LevelSteps coarser_steps;
+  bool normal_continues = true, tangential_continues = true;  // false: no finer level wants forecasts
 };
 
 // The coded coefficients of one set, summed where the next edges look for them. Edges are added in order: 0, 1, ... but for
@@ -36,7 +37,7 @@ struct CodingState {
 class CodedNeighbors {
  public:
   explicit CodedNeighbors(const Topology& t)
-      : topology_(t), values_(t.num_edges()), vertex_sum_(t.num_vertices), vertex_count_(t.num_vertices) {}
+      : topology_(t), has_copies_(!t.master.empty()), values_(t.num_edges()), around_(t.num_vertices) {}
 
   // Adds a coefficient; magnitudes over 4,096 count as 4,096.
   void Add(uint32_t edge, int32_t value);
@@ -47,15 +48,28 @@ class CodedNeighbors {
   std::vector<Forecast> ForecastFiner() const;
 
  private:
+  // The coded edges at a vertex: their magnitudes summed, and how many they are.
+  struct Around {
+    uint32_t sum = 0, count = 0;
+  };
+
   const Topology& topology_;
-  std::vector<int32_t> values_;         // #E
-  std::vector<uint32_t> vertex_sum_;    // #V, of the magnitudes of the coded edges at a vertex
-  std::vector<uint32_t> vertex_count_;  // #V, of those edges
+  const bool has_copies_;
+  std::vector<int32_t> values_;  // #E
+  std::vector<Around> around_;   // #V
 };
 
-// A forecast of the coarser level, its magnitude turned from steps `from` into steps `to`: integers only. Both steps
-// are > 0 and as RoundStep returns them.
-Forecast Rescale(const Forecast& forecast, float from, float to);
+// Turns forecasts of the coarser level, in steps `from`, into forecasts in steps `to`: integers only. Both steps are > 0
+// and as RoundStep returns them.
+class ForecastScale {
+ public:
+  ForecastScale(float from, float to);
+  Forecast operator()(const Forecast& forecast) const;
+
+ private:
+  uint32_t from_significand_, to_significand_;
+  int up_;  // the quotient of the powers of two, as an exponent
+};
 
 enum class CoefficientKind { kNormal, kTangential1, kTangential2 };
 
@@ -71,11 +85,11 @@ void CodeNormalSet(const Topology& t, float step, CodingState* state, std::vecto
   const std::vector<Forecast> forecasts = std::move(state->normal_forecasts);
   state->normal_forecasts.clear();
   if (!(step > 0)) return;
+  const ForecastScale scale(state->coarser_steps.normal_step, step);
   CodedNeighbors neighbors(t);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
     if (t.is_copy(e)) continue;
-    const Forecast forecast =
-        forecasts.empty() ? Forecast() : Rescale(forecasts[e], state->coarser_steps.normal_step, step);
+    const Forecast forecast = forecasts.empty() ? Forecast() : scale(forecasts[e]);
     CoefficientContext context = neighbors.ContextOf(e, forecasts.empty() ? nullptr : &forecast);
     if (t.on_curve[e] != 0) context.companion = kCurveCompanion;
     int32_t& q = (*set)[e];
@@ -83,7 +97,7 @@ void CodeNormalSet(const Topology& t, float step, CodingState* state, std::vecto
     q = CodeCoefficient(*coder, state->normal, context, q);
     neighbors.Add(e, q);
   }
-  state->normal_forecasts = neighbors.ForecastFiner();
+  if (state->normal_continues) state->normal_forecasts = neighbors.ForecastFiner();
 }
 
 // Codes the tangential set of one level after the normal one; see CodeLevel. For the neighbors an edge counts with the
@@ -94,11 +108,11 @@ void CodeTangentialSet(const Topology& t, float step, const std::vector<int32_t>
   const std::vector<Forecast> forecasts = std::move(state->tangential_forecasts);
   state->tangential_forecasts.clear();
   if (!(step > 0)) return;
+  const ForecastScale scale(state->coarser_steps.tangential_step, step);
   CodedNeighbors neighbors(t);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
     if (t.is_copy(e)) continue;
-    const Forecast forecast =
-        forecasts.empty() ? Forecast() : Rescale(forecasts[e], state->coarser_steps.tangential_step, step);
+    const Forecast forecast = forecasts.empty() ? Forecast() : scale(forecasts[e]);
     CoefficientContext context = neighbors.ContextOf(e, forecasts.empty() ? nullptr : &forecast);
     context.sign_class = 0;
     context.expect_negative = false;
@@ -114,7 +128,7 @@ void CodeTangentialSet(const Topology& t, float step, const std::vector<int32_t>
     q2 = CodeCoefficient(*coder, state->tangential2, context, q2);
     neighbors.Add(e, static_cast<int32_t>(Magnitude(q1) + Magnitude(q2)));
   }
-  state->tangential_forecasts = neighbors.ForecastFiner();
+  if (state->tangential_continues) state->tangential_forecasts = neighbors.ForecastFiner();
 }
 
 // Codes one level. t: the level whose edges get new midpoints. quantized: shapes as in QuantizedLevel; an encoding

@@ -14,7 +14,7 @@ Vec3f AnyOrthogonal(const Vec3f& n) {
 
 // Area vectors of the three fine triangles of `face` that meet at the midpoint of its edge k, added up: the middle face and
 // the corner faces at both ends.
-Vec3f AreaAround(const Topology& coarse, const std::vector<Vec3f>& positions, const std::vector<Vec3f>& midpoints,
+Vec3f AreaAround(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints,
                  uint32_t face, int k) {
   const Triangle& tri = coarse.triangles[face];
   const auto& fe = coarse.face_edges[face];
@@ -29,7 +29,7 @@ Vec3f AreaAround(const Topology& coarse, const std::vector<Vec3f>& positions, co
 
 }  // namespace
 
-LocalFrame LocalFrameAt(const Topology& coarse, const std::vector<Vec3f>& positions, const std::vector<Vec3f>& midpoints,
+LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints,
                         uint32_t edge) {
   LocalFrame frame;
   for (const uint32_t face : coarse.edge_faces[edge]) {

@@ -21,10 +21,10 @@ struct LocalFrame {
 //   normal    of the predicted fine mesh at the midpoint: the normalized sum of the area vectors of its fine triangles
 //   tangent1  direction of the edge (second end minus first), made orthogonal to the normal
 //   tangent2  normal x tangent1
-// positions: #V of the coarse level; predicted_midpoints: #E from PredictMidpoints. Where the surface degenerates to a
+// positions: #V of the coarse level or more; predicted_midpoints: #E from PredictMidpoints. Where the surface degenerates to a
 // line or point the axes x, y, z stand in, so that a frame is always orthonormal.
-LocalFrame LocalFrameAt(const Topology& coarse, const std::vector<Vec3f>& positions,
-                        const std::vector<Vec3f>& predicted_midpoints, uint32_t edge);
+LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions,
+                        Span<const Vec3f> predicted_midpoints, uint32_t edge);
 
 // Frames of all edges: #E.
 std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,

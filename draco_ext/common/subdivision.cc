@@ -181,7 +181,7 @@ Topology Refine(const Topology& c) {
   const uint32_t V = c.num_vertices, E = c.num_edges(), F = c.num_faces();
   Topology t;
   t.num_vertices = V + E;
-  t.triangles.resize(size_t{4} * F);
+  t.triangles = RefineTriangles(c);
   t.face_edges.resize(size_t{4} * F);
   t.edges.resize(size_t{2} * E + size_t{3} * F);
   t.edge_faces.resize(t.edges.size());
@@ -214,19 +214,30 @@ Topology Refine(const Topology& c) {
     const Triangle& tri = c.triangles[f];
     const auto& fe = c.face_edges[f];
     const auto half = [&](uint32_t e, uint32_t v) { return 2 * e + (c.edges[e][0] == v ? 0u : 1u); };
-    const Triangle mid = {V + fe[0], V + fe[1], V + fe[2]};
     for (uint32_t k = 0; k < 3; ++k) {
       const uint32_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
       const uint32_t inner = 2 * E + 3 * f + k;
-      t.triangles[4 * f + k] = {tri[k], mid[k2], mid[k1]};
       t.face_edges[4 * f + k] = {inner, half(fe[k1], tri[k]), half(fe[k2], tri[k])};
-      t.edges[inner] = {mid[k2], mid[k1]};
+      t.edges[inner] = {V + fe[k2], V + fe[k1]};
       t.edge_faces[inner] = {4 * f + k, 4 * f + 3};
-      t.triangles[4 * f + 3][k] = mid[k];
       t.face_edges[4 * f + 3][k] = inner;
     }
   }
   return t;
+}
+
+std::vector<Triangle> RefineTriangles(const Topology& c) {
+  const uint32_t V = c.num_vertices;
+  std::vector<Triangle> triangles;
+  triangles.reserve(size_t{4} * c.num_faces());
+  for (uint32_t f = 0; f < c.num_faces(); ++f) {
+    const Triangle& tri = c.triangles[f];
+    const auto& fe = c.face_edges[f];
+    const Triangle mid = {V + fe[0], V + fe[1], V + fe[2]};
+    const Triangle split[4] = {{tri[0], mid[2], mid[1]}, {tri[1], mid[0], mid[2]}, {tri[2], mid[1], mid[0]}, mid};
+    triangles.insert(triangles.end(), split, split + 4);
+  }
+  return triangles;
 }
 
 LevelCounts SubdividedCounts(LevelCounts counts, int levels) {

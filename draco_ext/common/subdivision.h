@@ -59,6 +59,8 @@ Status SetTags(const BaseTags& tags, Topology* topology);
 
 // Tables of the next finer level. Counts must fit: 4 #F < 2^32 (SubdividedCounts checks it for decoders).
 Topology Refine(const Topology& coarse);
+// The triangles of that level alone: 4 #F.
+std::vector<Triangle> RefineTriangles(const Topology& coarse);
 
 // Numbers of vertices, edges and faces after `levels` >= 0 refinements, in 64 bits. Growth stops once there are 2^58 faces
 // or more, so that no number of levels in a damaged header overflows into a small count. base: each below 2^33.

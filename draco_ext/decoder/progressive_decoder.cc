@@ -79,7 +79,8 @@ struct ProgressiveDecoder::State {
   size_t bytes_used = 0;  // that left `pending`
   Status refinement;
 
-  Topology topology;     // of the finest complete level; made when the header has come
+  Topology topology;     // of level `topology_level`; made when the header has come
+  int topology_level = 0;  // the finest complete level, or the one before: tables are large, and not wanted after the last level
   size_t num_still = 0;  // triangles that no level splits
   std::optional<StencilTable> stencils;
   CodingState coding;
@@ -93,6 +94,7 @@ struct ProgressiveDecoder::State {
   // Reads on in `bytes`; returns how many of them were used, or nothing where they end too early.
   StatusOr<std::optional<size_t>> TakeHeader(Span<const uint8_t> bytes);
   StatusOr<std::optional<size_t>> TakeSegment(Span<const uint8_t> bytes);
+  void ReachFinestLevel();
   Status AddLevel(const LevelSteps& steps, Span<const uint8_t> payload);
 };
 
@@ -113,6 +115,7 @@ StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeHeader(Span<const
 
 StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeSegment(Span<const uint8_t> bytes) {
   const int level = mesh.num_levels + 1;
+  ReachFinestLevel();
   LACERTA_RETURN_IF_ERROR(CheckLevelFits(topology, num_still, level, options.limits));
   const LevelSteps& steps = header->steps[static_cast<size_t>(mesh.num_levels)];
   std::optional<ReadSegment> segment = ReadSegment();  // of a silent level
@@ -124,9 +127,17 @@ StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeSegment(Span<cons
   return std::optional<size_t>(segment->size);
 }
 
+void ProgressiveDecoder::State::ReachFinestLevel() {
+  if (topology_level == mesh.num_levels) return;
+  topology = Refine(topology);
+  ++topology_level;
+}
+
 Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const uint8_t> payload) {
   QuantizedLevel quantized{std::vector<int32_t>(topology.num_edges()),
                            std::vector<int32_t>(size_t{2} * topology.num_edges())};
+  coding.normal_continues = mesh.num_levels + 1 < last_level() && header->steps[mesh.num_levels + 1].normal_step > 0;
+  coding.tangential_continues = mesh.num_levels + 1 < last_level() && header->steps[mesh.num_levels + 1].tangential_step > 0;
   RangeDecoder decoder(payload);
   CodeLevel(topology, steps, &coding, &quantized, &decoder);
   SynthesizeLevel(topology, *stencils, steps, quantized, &mesh.positions);
@@ -135,7 +146,6 @@ Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const u
     mesh.positions.erase(first_new, mesh.positions.end());
     return InvalidData("level " + std::to_string(mesh.num_levels + 1) + " has positions that are not finite");
   }
-  topology = Refine(topology);
   ++mesh.num_levels;
   return Status();
 }
@@ -183,6 +193,15 @@ size_t ProgressiveDecoder::bytes_used() const { return state_->bytes_used; }
 const Status& ProgressiveDecoder::refinement() const { return state_->refinement; }
 const SemiRegularMesh& ProgressiveDecoder::mesh() const { return state_->mesh; }
 
+std::vector<Triangle> ProgressiveDecoder::Triangles() const {
+  const State& s = *state_;
+  if (s.mesh.num_levels == 0) return s.mesh.base_triangles;
+  return WithStillTriangles(s.topology_level < s.mesh.num_levels ? RefineTriangles(s.topology) : s.topology.triangles,
+                            s.mesh.base_triangles, s.mesh.tags);
+}
+
+SemiRegularMesh ProgressiveDecoder::TakeMesh() && { return std::move(state_->mesh); }
+
 StatusOr<RefinementInfo> ReadRefinementInfo(Span<const uint8_t> refinement) {
   LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadHeader> read, ReadRefinementHeader(refinement));
   if (!read) return InvalidData("the refinement header is incomplete: " + std::to_string(refinement.size()) + " bytes");
@@ -194,10 +213,10 @@ StatusOr<RefinementResult> DecodeRefinement(const BaseMesh& base, Span<const uin
   LACERTA_ASSIGN_OR_RETURN(ProgressiveDecoder decoder, ProgressiveDecoder::Create(base, options));
   RefinementResult result;
   result.refinement = decoder.Append(refinement);
-  result.mesh = decoder.mesh();
   result.level = decoder.level();
   result.num_levels = decoder.num_levels();
   result.bytes_used = decoder.bytes_used();
+  result.mesh = std::move(decoder).TakeMesh();
   return result;
 }
 
@@ -211,10 +230,10 @@ StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level) {
     return TriangleMesh{std::vector<Vec3f>(mesh.positions.begin(), end), mesh.base_triangles};
   }
   LACERTA_ASSIGN_OR_RETURN(Topology topology, BuildTopology(mesh.num_base_vertices, mesh.base_triangles, mesh.tags));
-  for (int i = 0; i < level; ++i) topology = Refine(topology);
-  const auto end = mesh.positions.begin() + topology.num_vertices;
+  for (int i = 1; i < level; ++i) topology = Refine(topology);
+  const auto end = mesh.positions.begin() + topology.num_vertices + topology.num_edges();
   return TriangleMesh{std::vector<Vec3f>(mesh.positions.begin(), end),
-                      WithStillTriangles(std::move(topology.triangles), mesh.base_triangles, mesh.tags)};
+                      WithStillTriangles(RefineTriangles(topology), mesh.base_triangles, mesh.tags)};
 }
 
 }  // namespace lacerta

@@ -1,33 +1,47 @@
 #include "decoder/synthesis.h"
 
 #include <cstdint>
+#include <utility>
 
 #include "common/local_frame.h"
 
 namespace lacerta {
+namespace {
+
+// Moves the last #E of `positions`, the predicted midpoints of the edges of `coarse`, to where the coefficients want them.
+void AddDetails(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
+  Vec3f* const midpoints = positions->data() + coarse.num_vertices;
+  std::vector<std::pair<uint32_t, Vec3f>> details;  // added at last: frames depend on the predicted midpoints around
+  for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
+    const int32_t q1 = quantized.tangential[size_t{2} * e], q2 = quantized.tangential[size_t{2} * e + 1];
+    const int32_t qn = quantized.normal[e];
+    if ((q1 == 0 && q2 == 0 && qn == 0) || coarse.is_copy(e)) continue;  // most of a fine level: no frame needed
+    const Vec3f detail = {Dequantize(q1, steps.tangential_step, steps.tangential_bias),
+                          Dequantize(q2, steps.tangential_step, steps.tangential_bias),
+                          Dequantize(qn, steps.normal_step, steps.normal_bias)};
+    details.emplace_back(e, LocalFrameAt(coarse, *positions, {midpoints, coarse.num_edges()}, e).ToWorld(detail));
+  }
+  for (const auto& [e, detail] : details) midpoints[e] += detail;
+  for (uint32_t e = 0; e < coarse.num_edges() && !coarse.master.empty(); ++e) {
+    if (coarse.is_copy(e)) midpoints[e] = midpoints[coarse.master[e]];
+  }
+}
+
+bool IsSilent(const LevelSteps& steps) { return !(steps.normal_step > 0) && !(steps.tangential_step > 0); }
+
+}  // namespace
 
 void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const LevelSteps& steps,
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
-  AppendMidpoints(coarse, PredictMidpoints(coarse, table, *positions), steps, quantized, positions);
+  positions->resize(size_t{coarse.num_vertices} + coarse.num_edges());
+  PredictMidpoints(coarse, table, positions->data(), positions->data() + coarse.num_vertices);
+  if (!IsSilent(steps)) AddDetails(coarse, steps, quantized, positions);
 }
 
 void AppendMidpoints(const Topology& coarse, const std::vector<Vec3f>& midpoints, const LevelSteps& steps,
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
-  std::vector<Vec3f> details(midpoints.size());  // apart from `positions`, on which the frames depend
-  for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-    const int32_t q1 = quantized.tangential[size_t{2} * e], q2 = quantized.tangential[size_t{2} * e + 1];
-    const int32_t qn = quantized.normal[e];
-    if (coarse.is_copy(e) || (q1 == 0 && q2 == 0 && qn == 0)) continue;  // most of a fine level: no frame needed
-    const Vec3f detail = {Dequantize(q1, steps.tangential_step, steps.tangential_bias),
-                          Dequantize(q2, steps.tangential_step, steps.tangential_bias),
-                          Dequantize(qn, steps.normal_step, steps.normal_bias)};
-    details[e] = LocalFrameAt(coarse, *positions, midpoints, e).ToWorld(detail);
-  }
-  positions->reserve(positions->size() + midpoints.size());
-  for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-    const uint32_t source = coarse.is_copy(e) ? coarse.master[e] : e;
-    positions->push_back(midpoints[source] + details[source]);
-  }
+  positions->insert(positions->end(), midpoints.begin(), midpoints.end());
+  AddDetails(coarse, steps, quantized, positions);
 }
 
 }  // namespace lacerta

@@ -19,16 +19,18 @@ Status Refine(Span<const uint8_t> refinement, const DecodeOptions& options, floa
   RefinementOptions refinement_options;
   refinement_options.max_level = options.max_level;
   refinement_options.limits = options.limits;
-  LACERTA_ASSIGN_OR_RETURN(const RefinementResult refined, DecodeRefinement(base, refinement, refinement_options));
-  if (refined.level > 0) {
-    LACERTA_ASSIGN_OR_RETURN(result->mesh, MeshAtLevel(refined.mesh, refined.level));
-    result->level = refined.level;
+  LACERTA_ASSIGN_OR_RETURN(ProgressiveDecoder decoder, ProgressiveDecoder::Create(base, refinement_options));
+  const Status refined = decoder.Append(refinement);
+  result->level = decoder.level();
+  if (result->level > 0) {
+    result->mesh.triangles = decoder.Triangles();
+    result->mesh.positions = std::move(decoder).TakeMesh().positions;
   }
-  LACERTA_RETURN_IF_ERROR(refined.refinement);
-  const bool stopped = options.max_level.has_value() && refined.level >= *options.max_level;
-  if (refined.level < refined.num_levels && !stopped) {
-    return InvalidData("stream ends within level " + std::to_string(refined.level + 1) + " of " +
-                       std::to_string(refined.num_levels));
+  LACERTA_RETURN_IF_ERROR(refined);
+  const bool stopped = options.max_level.has_value() && result->level >= *options.max_level;
+  if (result->level < info.num_levels && !stopped) {
+    return InvalidData("stream ends within level " + std::to_string(result->level + 1) + " of " +
+                       std::to_string(info.num_levels));
   }
   return {};
 }

@@ -94,6 +94,11 @@ class ProgressiveDecoder {
   const Status& refinement() const;
   const SemiRegularMesh& mesh() const;  // base and complete levels
 
+  // Those of mesh() at level(), as MeshAtLevel gives them, but without making all levels anew.
+  std::vector<Triangle> Triangles() const;
+  // mesh(), out of a decoder that is wanted no more.
+  SemiRegularMesh TakeMesh() &&;
+
  private:
   struct State;
   explicit ProgressiveDecoder(std::unique_ptr<State> state);

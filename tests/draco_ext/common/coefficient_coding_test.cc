@@ -115,25 +115,25 @@ TEST(CoefficientModelsTest, ActivityClassesGrowWithTheExpectedMagnitude) {
   for (uint32_t x = 0; x < 1000; ++x) EXPECT_LE(ActivityClass(x), ActivityClass(x + 1));
 }
 
-TEST(RescaleTest, FollowsTheRatioOfSteps) {
+TEST(ForecastScaleTest, FollowsTheRatioOfSteps) {
   for (const float from : {1e-30f, 0.001f, 0.75f, 1.0f, 3.0f, 1e20f}) {
     for (const float ratio : {0.02f, 0.5f, 1.0f, 1.4f, 2.0f, 7.0f}) {
       const float a = RoundStep(from), b = RoundStep(from / ratio);
       for (const uint32_t magnitude : {0u, 1u, 16u, 1000u}) {
         const double exact = magnitude * (static_cast<double>(a) / b);
-        EXPECT_LE(Rescale({magnitude, -1}, a, b).magnitude, exact + 1e-9);
-        EXPECT_GT(Rescale({magnitude, -1}, a, b).magnitude, exact - 1 - exact / 128);
-        EXPECT_EQ(Rescale({magnitude, -1}, a, b).sign, -1);
+        EXPECT_LE(ForecastScale(a, b)({magnitude, -1}).magnitude, exact + 1e-9);
+        EXPECT_GT(ForecastScale(a, b)({magnitude, -1}).magnitude, exact - 1 - exact / 128);
+        EXPECT_EQ(ForecastScale(a, b)({magnitude, -1}).sign, -1);
       }
     }
   }
 }
 
-TEST(RescaleTest, IsBoundedForAbsurdRatios) {
+TEST(ForecastScaleTest, IsBoundedForAbsurdRatios) {
   const float tiny = StepFromBits(0x0080), huge = StepFromBits(0x7f7f);
-  EXPECT_EQ(Rescale({65536, 1}, tiny, huge).magnitude, 0u);
-  EXPECT_EQ(Rescale({65536, 1}, huge, tiny).magnitude, 65536u);
-  EXPECT_EQ(Rescale({0, 1}, huge, tiny).magnitude, 0u);
+  EXPECT_EQ(ForecastScale(tiny, huge)({65536, 1}).magnitude, 0u);
+  EXPECT_EQ(ForecastScale(huge, tiny)({65536, 1}).magnitude, 65536u);
+  EXPECT_EQ(ForecastScale(huge, tiny)({0, 1}).magnitude, 0u);
 }
 
 TEST(ForecastTest, ReachesTheFourChildrenOfAnEdge) {
