@@ -15,16 +15,13 @@ int32_t SignOf(int32_t value) { return (value > 0) - (value < 0); }
 
 }  // namespace
 
-void CodedNeighbors::Add(uint32_t edge, int32_t value) {
+void CodedNeighbors::AddNonzero(uint32_t edge, int32_t value) {
   const int32_t counted = std::clamp(value, -kMaxCountedMagnitude, kMaxCountedMagnitude);
   values_[edge] = counted;
-  for (const uint32_t v : topology_.edges[edge]) {
-    around_[v].sum += Magnitude(counted);
-    ++around_[v].count;
-  }
+  for (const uint32_t v : topology_.edges[edge]) around_[v].sum += Magnitude(counted);
 }
 
-CoefficientContext CodedNeighbors::ContextOf(uint32_t edge, const Forecast* forecast) const {
+CoefficientContext CodedNeighbors::ContextAmongNonzero(uint32_t edge, const Forecast* forecast) const {
   // Edges around both ends weigh 1, and those in the faces of `edge`, which are among them, 2.
   const auto& [a, b] = topology_.edges[edge];
   uint32_t sum = around_[a].sum + around_[b].sum;
@@ -44,12 +41,9 @@ CoefficientContext CodedNeighbors::ContextOf(uint32_t edge, const Forecast* fore
     sixteenths += uint64_t{kForecastWeight} * forecast->magnitude;
     weight += kForecastWeight;
   }
-  CoefficientContext context;
-  if (sixteenths > 0) context.activity = ActivityClass(static_cast<uint32_t>((sixteenths + weight / 2) / weight));
-  const int32_t sign = 3 * std::clamp(signed_sum, -2, 2) + (forecast != nullptr ? forecast->sign : 0);
-  context.sign_class = static_cast<int>(Magnitude(sign));
-  context.expect_negative = sign < 0;
-  return context;
+  // Something is not zero, so the weight is not.
+  const int activity = ActivityClass(static_cast<uint32_t>((sixteenths + weight / 2) / weight));
+  return MakeContext(activity, 3 * std::clamp(signed_sum, -2, 2) + (forecast != nullptr ? forecast->sign : 0));
 }
 
 std::vector<Forecast> CodedNeighbors::ForecastFiner() const {

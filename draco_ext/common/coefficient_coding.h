@@ -40,10 +40,22 @@ class CodedNeighbors {
       : topology_(t), has_copies_(!t.master.empty()), values_(t.num_edges()), around_(t.num_vertices) {}
 
   // Adds a coefficient; magnitudes over 4,096 count as 4,096.
-  void Add(uint32_t edge, int32_t value);
+  void Add(uint32_t edge, int32_t value) {
+    const auto& [a, b] = topology_.edges[edge];
+    ++around_[a].count;
+    ++around_[b].count;
+    if (value != 0) AddNonzero(edge, value);
+  }
   // Context of `edge`, the next one to be added. forecast: null where nothing is known; its magnitude in 1/16 of the
   // step of this level.
-  CoefficientContext ContextOf(uint32_t edge, const Forecast* forecast) const;
+  CoefficientContext ContextOf(uint32_t edge, const Forecast* forecast) const {
+    // Most of a fine level: nothing but zeros around both ends, where the other edges of both faces are, too.
+    const auto& [a, b] = topology_.edges[edge];
+    if ((around_[a].sum | around_[b].sum) != 0 || (forecast != nullptr && forecast->magnitude != 0)) {
+      return ContextAmongNonzero(edge, forecast);
+    }
+    return MakeContext(0, forecast != nullptr ? forecast->sign : 0);
+  }
   // For every edge of the next finer level (2 #E + 3 #F) what these coefficients (all added) let expect.
   std::vector<Forecast> ForecastFiner() const;
 
@@ -52,6 +64,17 @@ class CodedNeighbors {
   struct Around {
     uint32_t sum = 0, count = 0;
   };
+
+  void AddNonzero(uint32_t edge, int32_t value);
+  CoefficientContext ContextAmongNonzero(uint32_t edge, const Forecast* forecast) const;
+  // sign: what is expected, negative or positive, and how strongly.
+  static CoefficientContext MakeContext(int activity, int32_t sign) {
+    CoefficientContext context;
+    context.activity = activity;
+    context.sign_class = static_cast<int>(Magnitude(sign));
+    context.expect_negative = sign < 0;
+    return context;
+  }
 
   const Topology& topology_;
   const bool has_copies_;
