@@ -155,7 +155,7 @@ void CodeTangentialSet(const Topology& t, float step, const std::vector<int32_t>
 }
 
 // Codes one level. t: the level whose edges get new midpoints. quantized: shapes as in QuantizedLevel; an encoding
-// coder leaves the coefficients as they are, a decoding coder writes them (all zero on entry). choose(kind, edge,
+// coder leaves the coefficients as they are, a decoding coder writes them (all zero on entry); on a silent level it may be empty. choose(kind, edge,
 // models, context, &value) is called right before each coefficient is coded and may change it: an encoder sees there
 // what each value costs. Copies (Topology::is_copy) have no coefficients: theirs are left alone, and count as zero.
 template <typename Coder, typename Choose = KeepCoefficients>

@@ -34,6 +34,9 @@ struct LevelSteps {
   bool is_silent() const { return normal_step == 0 && tangential_step == 0; }
 };
 
+// Whether no set of the level is coded: all its details are zero.
+inline bool IsSilent(const LevelSteps& steps) { return !(steps.normal_step > 0) && !(steps.tangential_step > 0); }
+
 // The step nearest to `step` that a stream can hold: the upper 16 bits of its binary32 form, rounded to nearest.
 // Infinite, NaN, negative and very small (< 2^-126) steps become 0.
 float RoundStep(float step);

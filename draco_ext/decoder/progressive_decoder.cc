@@ -134,10 +134,14 @@ void ProgressiveDecoder::State::ReachFinestLevel() {
 }
 
 Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const uint8_t> payload) {
-  QuantizedLevel quantized{std::vector<int32_t>(topology.num_edges()),
-                           std::vector<int32_t>(size_t{2} * topology.num_edges())};
-  coding.normal_continues = mesh.num_levels + 1 < last_level() && header->steps[mesh.num_levels + 1].normal_step > 0;
-  coding.tangential_continues = mesh.num_levels + 1 < last_level() && header->steps[mesh.num_levels + 1].tangential_step > 0;
+  QuantizedLevel quantized;
+  if (!IsSilent(steps)) {
+    quantized.normal.resize(topology.num_edges());
+    quantized.tangential.resize(size_t{2} * topology.num_edges());
+  }
+  const LevelSteps finer = mesh.num_levels + 1 < last_level() ? header->steps[mesh.num_levels + 1] : LevelSteps();
+  coding.normal_continues = finer.normal_step > 0;
+  coding.tangential_continues = finer.tangential_step > 0;
   RangeDecoder decoder(payload);
   CodeLevel(topology, steps, &coding, &quantized, &decoder);
   SynthesizeLevel(topology, *stencils, steps, quantized, &mesh.positions);

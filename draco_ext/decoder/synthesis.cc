@@ -27,8 +27,6 @@ void AddDetails(const Topology& coarse, const LevelSteps& steps, const Quantized
   }
 }
 
-bool IsSilent(const LevelSteps& steps) { return !(steps.normal_step > 0) && !(steps.tangential_step > 0); }
-
 }  // namespace
 
 void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const LevelSteps& steps,

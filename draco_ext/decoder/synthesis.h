@@ -15,7 +15,7 @@ namespace lacerta {
 // dequantized detail in the local frame of the edge's midpoint. A copy (Topology::is_copy) gets the position of its master.
 //   coarse     level i
 //   table      stencils of the base mesh or of `coarse`: subdivision makes no new extraordinary vertices
-//   quantized  shapes as in QuantizedLevel; steps: its quantization
+//   quantized  shapes as in QuantizedLevel, or empty on a silent level; steps: its quantization
 //   positions  #V of `coarse` on entry, #V + #E on return, model units
 void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const LevelSteps& steps,
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions);
