@@ -164,6 +164,25 @@ TEST(VisitStencilTest, StencilsDoNotCrossACrease) {
   EXPECT_GE(weights.size(), 6u);
 }
 
+TEST(PredictMidpointsTest, AddsUpStencilsInTheirOrder) {
+  for (const TriangleMesh& mesh : {shapes::Pillow(), shapes::Bipyramid(4), shapes::Bipyramid(300), shapes::Icosahedron(), shapes::Torus(5, 4),
+                                   shapes::SingleTriangle(), shapes::Fan(6), shapes::Grid(4)}) {
+    Topology t = shapes::TopologyOf(mesh);
+    std::vector<Vec3f> positions = mesh.positions;
+    for (int level = 0; level < 3; ++level, t = Refine(t)) {
+      const StencilTable table(t);
+      const std::vector<Vec3f> midpoints = PredictMidpoints(t, table, positions);
+      ASSERT_EQ(midpoints.size(), t.num_edges());
+      for (uint32_t e = 0; e < t.num_edges(); ++e) {
+        Vec3f sum;
+        VisitStencil(t, table, e, [&](uint32_t v, float weight) { sum += positions[v] * weight; });
+        ASSERT_EQ(midpoints[e], sum) << "edge " << e << " of " << t.num_edges();  // to the last bit
+      }
+      positions.insert(positions.end(), midpoints.begin(), midpoints.end());
+    }
+  }
+}
+
 TEST(PredictMidpointsTest, RoofsKeepTheirRidge) {
   // Two planes that meet in a crease: every edge but those next to the border corners has its middle in its plane.
   const Topology t = CreasedGrid({0, 4, 20, 24});

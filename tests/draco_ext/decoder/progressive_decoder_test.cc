@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <utility>
 
 #include "common/crc32.h"
 #include "decoder/stream_reader.h"
@@ -528,6 +529,22 @@ TEST(MeshAtLevelTest, GivesEveryLevel) {
   }
   EXPECT_EQ(MeshAtLevel(result.mesh, 4).status().code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(MeshAtLevel(result.mesh, -1).status().code(), StatusCode::kInvalidArgument);
+}
+
+TEST(ProgressiveDecoderTest, TrianglesAreThoseOfTheFinestCompleteLevel) {
+  for (const auto& [base, tags] : TaggedBases()) {
+    const Coefficients c = RandomCoefficients(base, 3, 12, 4.0, tags);
+    const RefinementBytes refinement = WriteRefinement(base, c.steps, c.levels, tags).value();
+    const RefinementResult whole = Decode(base, refinement.bytes);
+    ProgressiveDecoder decoder = ProgressiveDecoder::Create(base, {}).value();
+    EXPECT_EQ(decoder.Triangles(), base.triangles);
+    for (size_t i = 0; i < refinement.bytes.size(); ++i) {
+      ASSERT_TRUE(decoder.Append(Span<const uint8_t>(&refinement.bytes[i], 1)).ok());
+      ASSERT_EQ(decoder.Triangles(), MeshAtLevel(whole.mesh, decoder.level()).value().triangles) << i;
+    }
+    EXPECT_EQ(decoder.level(), 3);
+    EXPECT_EQ(std::move(decoder).TakeMesh().positions, whole.mesh.positions);
+  }
 }
 
 TEST(BaseMeshTest, SurvivesFloatsOfAHost) {
