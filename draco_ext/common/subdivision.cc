@@ -7,21 +7,29 @@
 namespace lacerta {
 namespace {
 
-// For every corner 3f + k the first corner that lies opposite the same vertex pair. Sorting bounds the work on any input,
-// a fan of a million faces around one vertex included.
-std::vector<uint32_t> FirstCornerOfEdge(const std::vector<Triangle>& triangles) {
-  std::vector<std::pair<uint64_t, uint32_t>> keyed;
-  keyed.reserve(triangles.size() * 3);
-  for (const Triangle& tri : triangles) {
-    for (int k = 0; k < 3; ++k) {
-      const uint64_t a = tri[(k + 1) % 3], b = tri[(k + 2) % 3];
-      keyed.emplace_back(std::min(a, b) << 32 | std::max(a, b), static_cast<uint32_t>(keyed.size()));
-    }
+// For every corner 3f + k the first corner that lies opposite the same vertex pair. Sorting the pairs of each lower vertex
+// bounds the work on any input, a fan of a million faces around one vertex included.
+std::vector<uint32_t> FirstCornerOfEdge(const std::vector<Triangle>& triangles, uint32_t num_vertices) {
+  const auto pair_of = [&](uint32_t corner) {
+    const Triangle& tri = triangles[corner / 3];
+    return std::minmax({tri[(corner + 1) % 3], tri[(corner + 2) % 3]});
+  };
+  const auto num_corners = static_cast<uint32_t>(3 * triangles.size());
+  std::vector<uint32_t> end(num_vertices, 0);  // of the pairs of a lower vertex; first their number, then their beginning
+  for (uint32_t corner = 0; corner < num_corners; ++corner) ++end[pair_of(corner).first];
+  for (uint32_t v = 0, begin = 0; v < num_vertices; ++v) begin += std::exchange(end[v], begin);
+  std::vector<std::pair<uint32_t, uint32_t>> keyed(num_corners);  // the higher vertex, the corner
+  for (uint32_t corner = 0; corner < num_corners; ++corner) {
+    const auto [lower, higher] = pair_of(corner);
+    keyed[end[lower]++] = {higher, corner};
   }
-  std::sort(keyed.begin(), keyed.end());
-  std::vector<uint32_t> first(keyed.size());
-  for (size_t i = 0; i < keyed.size(); ++i) {
-    first[keyed[i].second] = i > 0 && keyed[i - 1].first == keyed[i].first ? first[keyed[i - 1].second] : keyed[i].second;
+  std::vector<uint32_t> first(num_corners);
+  for (uint32_t v = 0, begin = 0; v < num_vertices; begin = end[v++]) {
+    std::sort(keyed.begin() + begin, keyed.begin() + end[v]);
+    for (uint32_t i = begin; i < end[v]; ++i) {
+      const bool is_first = i == begin || keyed[i - 1].first != keyed[i].first;
+      first[keyed[i].second] = is_first ? keyed[i].second : first[keyed[i - 1].second];
+    }
   }
   return first;
 }
@@ -144,7 +152,7 @@ StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triang
   }
   t.edges.reserve(triangles.size() * 3 / 2 + 3);
   t.edge_faces.reserve(triangles.size() * 3 / 2 + 3);
-  const std::vector<uint32_t> first_corner = FirstCornerOfEdge(triangles);
+  const std::vector<uint32_t> first_corner = FirstCornerOfEdge(triangles, num_vertices);
   for (uint32_t corner = 0; corner < first_corner.size(); ++corner) {
     const uint32_t f = corner / 3, k = corner % 3, first = first_corner[corner];
     const uint32_t a = triangles[f][(k + 1) % 3], b = triangles[f][(k + 2) % 3];
