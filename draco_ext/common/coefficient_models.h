@@ -36,6 +36,7 @@ struct CoefficientContext {
 
 // Models of one set. They live on from level to level.
 struct SetModels {
+  SetModels() = default;  // that begin with even odds
   explicit SetModels(const SetPriors& priors) {
     const auto begin = [](uint8_t probability) { return BitModel(uint32_t{probability} << 8, kPriorBits); };
     for (int a = 0; a < kNumActivityClasses; ++a) {

@@ -30,12 +30,9 @@ struct LevelSteps {
   uint8_t normal_bias = 0;      // 0..15
   uint8_t tangential_bias = 0;  // 0..15
 
-  // Whether no set is coded. Such a level has no segment.
+  // Whether no set is coded: all details are zero. Such a level has no segment.
   bool is_silent() const { return normal_step == 0 && tangential_step == 0; }
 };
-
-// Whether no set of the level is coded: all its details are zero.
-inline bool IsSilent(const LevelSteps& steps) { return !(steps.normal_step > 0) && !(steps.tangential_step > 0); }
 
 // The step nearest to `step` that a stream can hold: the upper 16 bits of its binary32 form, rounded to nearest.
 // Infinite, NaN, negative and very small (< 2^-126) steps become 0.

@@ -135,7 +135,7 @@ void ProgressiveDecoder::State::ReachFinestLevel() {
 
 Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const uint8_t> payload) {
   QuantizedLevel quantized;
-  if (!IsSilent(steps)) {
+  if (!steps.is_silent()) {
     quantized.normal.resize(topology.num_edges());
     quantized.tangential.resize(size_t{2} * topology.num_edges());
   }

@@ -33,7 +33,7 @@ void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const Le
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
   positions->resize(size_t{coarse.num_vertices} + coarse.num_edges());
   PredictMidpoints(coarse, table, positions->data(), positions->data() + coarse.num_vertices);
-  if (!IsSilent(steps)) AddDetails(coarse, steps, quantized, positions);
+  if (!steps.is_silent()) AddDetails(coarse, steps, quantized, positions);
 }
 
 void AppendMidpoints(const Topology& coarse, const std::vector<Vec3f>& midpoints, const LevelSteps& steps,

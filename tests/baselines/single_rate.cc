@@ -44,8 +44,7 @@ Point Expect(const Topology& t, uint32_t v, uint32_t f, const std::vector<Point>
 
 template <typename Coder>
 std::vector<Point> CodePoints(const Topology& t, const std::vector<Point>* truth, Coder* coder) {
-  constexpr uint32_t kEvenOdds = 32768;
-  SetModels models(kEvenOdds);
+  SetModels models;
   const std::vector<uint32_t> faces = FacesOfExpectation(t);
   std::vector<Point> points(t.num_vertices);
   for (uint32_t v = 0; v < t.num_vertices; ++v) {
