@@ -9,6 +9,7 @@
 
 #include "common/bit_model.h"
 #include "common/coefficient_priors.h"
+#include "common/symbol_coding.h"
 
 namespace lacerta {
 
@@ -49,8 +50,7 @@ struct SetModels {
   std::array<std::array<BitModel, kNumCompanionClasses>, kNumActivityClasses> nonzero;
   std::array<BitModel, kNumSignClasses> unexpected_sign;
   std::array<std::array<BitModel, kUnaryLength>, kNumActivityClasses> larger;  // [m - 1]: the magnitude exceeds m
-  std::array<BitModel, kMaxExponent> longer;      // [k]: the rest has more than k bits below its leading one
-  std::array<BitModel, kMaxExponent> second_bit;  // [k - 1]: of a rest with k bits below its leading one
+  LengthModels<kMaxExponent> rest;  // what the magnitude exceeds kUnaryLength by
 };
 
 inline uint32_t Magnitude(int32_t q) { return static_cast<uint32_t>(q < 0 ? -int64_t{q} : int64_t{q}); }
@@ -66,17 +66,7 @@ int32_t CodeCoefficient(Coder& coder, SetModels& models, const CoefficientContex
   uint32_t magnitude = 1;
   auto& larger = models.larger[context.activity];
   while (magnitude <= kUnaryLength && coder.Code(larger[magnitude - 1], target > magnitude)) ++magnitude;
-  if (magnitude > kUnaryLength) {  // Exp-Golomb code of the rest: length, then the bits below the leading one
-    const uint32_t rest = target - kUnaryLength;
-    int length = 0;
-    while (length < kMaxExponent && coder.Code(models.longer[length], rest >> length > 1)) ++length;
-    uint32_t coded = 1;
-    for (int bit = length - 1; bit >= 0; --bit) {
-      const bool one = (rest >> bit & 1) != 0;
-      coded = coded << 1 | (bit == length - 1 ? coder.Code(models.second_bit[bit], one) : coder.CodeEven(one));
-    }
-    magnitude = kUnaryLength + coded;
-  }
+  if (magnitude > kUnaryLength) magnitude = kUnaryLength + CodePositive(models.rest, target - kUnaryLength, &coder);
   return negative ? -static_cast<int32_t>(magnitude) : static_cast<int32_t>(magnitude);
 }
 

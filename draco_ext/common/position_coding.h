@@ -90,7 +90,7 @@ class DifferenceModels {
   static constexpr std::array<uint32_t, kShapes> kOther = {8000, 14000, 25500, 35500, 44000, 39000};
   static constexpr uint32_t kSeen = 24;
   std::array<std::array<std::array<BitModel, kUnary>, kShapes>, 3> farther_;
-  std::array<LengthModels, 3> far_;
+  std::array<IntegerModels, 3> far_;
 };
 
 // Codes the points of all vertices. t: of a mesh in which every vertex has a triangle. origin: the point of the

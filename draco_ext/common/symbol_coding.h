@@ -1,5 +1,5 @@
 // Integers as binary decisions with adaptive models, for encoder and decoder alike. Coder as in common/coefficient_coding.h.
-// Specified in docs/format.md, "Integers of the compact base".
+// Specified in docs/format.md, "Binarization" and "Integers of the compact base".
 #ifndef LACERTA_COMMON_SYMBOL_CODING_H_
 #define LACERTA_COMMON_SYMBOL_CODING_H_
 
@@ -10,25 +10,32 @@
 
 namespace lacerta {
 
-// Models of an integer of up to 31 bits, small ones being the likelier: the number of its bits by unary decisions, then the bits,
-// the highest of them with a model.
+// Models of a positive integer below 2^(kMostBits + 1), small ones being the likelier, as an Exp-Golomb code: how many bits it has
+// below its leading one, by unary decisions, then those bits, the highest of them with a model.
+template <int kMostBits>
 struct LengthModels {
-  std::array<BitModel, 31> longer;
-  std::array<BitModel, 31> second_bit;
+  std::array<BitModel, kMostBits> longer;      // [k]: there are more than k bits
+  std::array<BitModel, kMostBits> second_bit;  // [k - 1]: the highest of k bits
 };
 
-// Codes value < 2^31 - 1.
-template <typename Coder>
-uint32_t CodeByLength(LengthModels& models, uint32_t value, Coder* coder) {
-  const uint32_t number = value + 1;
-  uint32_t bits = 0;
-  while (bits < 30 && coder->Code(models.longer[bits], number >> (bits + 1) != 0)) ++bits;
+template <int kMostBits, typename Coder>
+uint32_t CodePositive(LengthModels<kMostBits>& models, uint32_t number, Coder* coder) {
+  int bits = 0;
+  while (bits < kMostBits && coder->Code(models.longer[bits], number >> bits > 1)) ++bits;
   uint32_t result = 1;
-  for (uint32_t i = bits; i-- > 0;) {
+  for (int i = bits - 1; i >= 0; --i) {
     const bool bit = (number >> i & 1) != 0;
-    result = result << 1 | uint32_t{i + 1 == bits ? coder->Code(models.second_bit[bits], bit) : coder->CodeEven(bit)};
+    result = result << 1 | uint32_t{i == bits - 1 ? coder->Code(models.second_bit[i], bit) : coder->CodeEven(bit)};
   }
-  return result - 1;
+  return result;
+}
+
+// Integers of the compact base: value < 2^31 - 1, from 0 on.
+using IntegerModels = LengthModels<30>;
+
+template <typename Coder>
+uint32_t CodeByLength(IntegerModels& models, uint32_t value, Coder* coder) {
+  return CodePositive(models, value + 1, coder) - 1;
 }
 
 // Codes value < count, all of them equally likely; count >= 1. Halves the range that is left with probabilities in 1/65536.

@@ -78,7 +78,7 @@ class ValenceModels {
   BitModel dummy{600, kSeen};
   std::array<BitModel, 2> joins{BitModel(130, kSeen), BitModel(470, kSeen)};  // with one free edge at the focus, with more
   BitModel joins_far;
-  LengthModels join_distance;
+  IntegerModels join_distance;
 
  private:
   static constexpr uint32_t kUnary = 10;
@@ -91,7 +91,7 @@ class ValenceModels {
   std::array<BitModel, kContexts> large_;
   std::array<std::array<BitModel, kUnary>, kContexts> larger_;
   std::array<std::array<BitModel, 2>, kContexts> smaller_;
-  LengthModels huge_, dummy_valence_;
+  IntegerModels huge_, dummy_valence_;
 };
 
 // Places of the loop around `focus` that a new triangle may join, the nearest first: at most kJoinReach on either side.

@@ -50,9 +50,9 @@ double CandidateSearch::Goal() const {
 
 double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogBytesPerLogLambda : kPsnrPerLogLambda; }
 
-StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda) {
+StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, int passes) {
   Attempt attempt;
-  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({std::exp(kept_steps_.value_or(log_lambda)), std::exp(log_lambda), passes_}, mode_));
+  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({std::exp(kept_steps_.value_or(log_lambda)), std::exp(log_lambda), passes}, mode_));
   const double estimate = EstimatePsnr(attempt.stream);
   if (!offset_) {
     constexpr uint64_t kRoughSamples = 50'000;
@@ -122,12 +122,11 @@ bool CandidateSearch::CannotReach() const {
 }
 
 StatusOr<double> CandidateSearch::Score() {
-  passes_ = kScorePasses;
   double score = std::numeric_limits<double>::infinity();
   double least_miss = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kScoreTries; ++i) {
     const double log_lambda = NextGuess();
-    LACERTA_ASSIGN_OR_RETURN(const Attempt attempt, Try(log_lambda));
+    LACERTA_ASSIGN_OR_RETURN(const Attempt attempt, Try(log_lambda, kScorePasses));
     const double miss = Goal() - attempt.value;
     if (std::fabs(miss) >= least_miss) continue;
     least_miss = std::fabs(miss);
@@ -140,8 +139,7 @@ StatusOr<double> CandidateSearch::Score() {
 }
 
 StatusOr<MeasuredStream> CandidateSearch::Meet() {
-  passes_ = kMeetPasses;
-  values_.clear();
+  values_.clear();  // those of the scores: fewer passes
   constexpr uint64_t kSamples = 200'000;
   const double low = target_.is_rate ? -kBytesSlack : kPsnrMargin, high = target_.is_rate ? 0 : kPsnrSlack;  // beyond the target
   const auto excess = [&](const Attempt& a) { return target_.is_rate ? a.value - std::log(target_.bytes) : a.psnr - target_.psnr; };
@@ -168,7 +166,7 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
       offset_ = 0;
     }
     last = log_lambda;
-    StatusOr<Attempt> tried = Try(log_lambda);
+    StatusOr<Attempt> tried = Try(log_lambda, kMeetPasses);
     if (!tried.ok() && (best || unmeasured)) break;  // so coarse a lattice cannot carry the base: what there is must do
     LACERTA_ASSIGN_OR_RETURN(Attempt attempt, std::move(tried));
     if (!target_.is_rate) {

@@ -56,7 +56,7 @@ class CandidateSearch {
     double psnr = 0;   // dB: estimated, or measured once it was
     double value = 0;  // as in values_
   };
-  StatusOr<Attempt> Try(double log_lambda);
+  StatusOr<Attempt> Try(double log_lambda, int passes);  // passes: of the descent
   double EstimatePsnr(const CodedStream& stream) const;
   double MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const;
   double Goal() const;  // the value aimed at
@@ -78,7 +78,6 @@ class CandidateSearch {
   const ResolvedTarget target_;
   const EncodeMode mode_;
   double start_;                     // ln(lambda) to begin with
-  int passes_ = 0;                   // of the descent
   std::map<double, double> values_;  // of the attempts so far, by ln(lambda): ln(bytes) at a rate, else estimated dB
   std::optional<double> offset_;     // dB that a measure showed more than the estimate, which hardly depends on lambda
   // Where set, the steps stay at this ln(lambda), and what is tried is the slope of the descent alone.

@@ -268,14 +268,14 @@ TEST(CompactBaseTest, SurvivesTruncationAndEveryChangedByte) {
 TEST(SymbolCodingTest, CodesIntegers) {
   const std::vector<uint32_t> values = {0, 1, 2, 3, 7, 8, 100, 65535, 1u << 20, (1u << 31) - 3};
   RangeEncoder encoder;
-  LengthModels models;
+  IntegerModels models;
   for (const uint32_t value : values) {
     CodeByLength(models, value, &encoder);
     CodeUniform(value + 1, value / 2, &encoder);
   }
   const Bytes bytes = encoder.Finish();
   RangeDecoder decoder(bytes);
-  LengthModels again;
+  IntegerModels again;
   for (const uint32_t value : values) {
     EXPECT_EQ(CodeByLength(again, 0, &decoder), value);
     EXPECT_EQ(CodeUniform(value + 1, 0, &decoder), value / 2);
