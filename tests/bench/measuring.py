@@ -15,8 +15,8 @@ PROJECT = Path(__file__).resolve().parents[2]
 EXIT_OK, EXIT_TARGET_MISSED = 0, 5
 
 
-def parse_arguments(description, meshes):
-    """Arguments that every table takes; `meshes` are measured where none is named."""
+def table_arguments(description, meshes):
+    """The arguments that every table takes, in a parser; `meshes` are measured where none is named."""
     shared = Path(os.environ.get("LACERTA_SHARED_DIR", PROJECT.parent / "shared"))
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("meshes", nargs="*", default=meshes, help="names of meshes; default: " + " ".join(meshes))
@@ -24,11 +24,20 @@ def parse_arguments(description, meshes):
     parser.add_argument("--peers", type=Path, default=shared / "peers", help="folder of NAME.csv and vdmc/NAME.csv")
     parser.add_argument("--command", type=Path, default=PROJECT / "build/release/bin/lacerta", help="the lacerta command")
     parser.add_argument("--out", type=Path, default=PROJECT / "docs/results", help="folder of the tables")
+    return parser
+
+
+def checked(parser):
+    """The arguments of a parser of table_arguments, once the files that they name are seen to be there."""
     arguments = parser.parse_args()
     missing = [str(p) for p in [arguments.command] + [arguments.data / f"{m.partition(chr(58))[0]}.ply" for m in arguments.meshes] if not p.exists()]
     if missing:
         parser.error("not found: " + ", ".join(missing))
     return arguments
+
+
+def parse_arguments(description, meshes):
+    return checked(table_arguments(description, meshes))
 
 
 def run(command):
@@ -74,13 +83,17 @@ def pack_and_check(lacerta, mesh, *options):
     }
 
 
+def peer_points(peer_csv, peer):
+    """PSNR and bytes of all rows of a peer; none where there is no such file."""
+    if not peer_csv.exists():
+        return []
+    with open(peer_csv, newline="") as file:
+        return [(float(row["psnr"]), int(row["bytes"])) for row in csv.DictReader(file) if row["peer"] == peer]
+
+
 def fewest_bytes(peer_csv, peer, psnr):
     """Bytes of the smallest row of a peer that reaches the PSNR, or None."""
-    if not peer_csv.exists():
-        return None
-    with open(peer_csv, newline="") as file:
-        sizes = [int(row["bytes"]) for row in csv.DictReader(file) if row["peer"] == peer and float(row["psnr"]) >= psnr]
-    return min(sizes, default=None)
+    return min((size for reached, size in peer_points(peer_csv, peer) if reached >= psnr), default=None)
 
 
 def geometric_mean(values):
