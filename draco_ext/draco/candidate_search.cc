@@ -69,7 +69,8 @@ double CandidateSearch::EstimatePsnr(const CodedStream& stream) const {
   return Psnr(std::sqrt(stream.plane_distortion + remesh_distance * remesh_distance), meter_.diagonal());
 }
 
-double CandidateSearch::MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const {
+double CandidateSearch::MeasurePsnr(const Attempt& attempt, uint64_t num_samples) {
+  ++measurements_;
   return Psnr(DecodedDistance(meter_, attempt.stream.FinestMesh(), SurfaceDistanceOptions::RmsOnly(num_samples)), meter_.diagonal());
 }
 
@@ -190,6 +191,7 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
   MeasuredStream result;
   result.meets_target = keeps_promise(*best);
   result.psnr = best->psnr;
+  result.measurements = measurements_;
   result.stream = std::move(best->stream);
   return result;
 }

@@ -26,6 +26,7 @@ struct MeasuredStream {
   CodedStream stream;
   double psnr = 0;  // dB, two-sided, to the input: measured at a PSNR target, estimated at a rate
   bool meets_target = false;
+  int measurements = 0;  // of the surface distance, rough ones too, that led to the stream
 };
 
 // The slope of the rate-distortion curve at which streams usually are of that PSNR, squared model units per bit.
@@ -58,7 +59,7 @@ class CandidateSearch {
   };
   StatusOr<Attempt> Try(double log_lambda, int passes);  // passes: of the descent
   double EstimatePsnr(const CodedStream& stream) const;
-  double MeasurePsnr(const Attempt& attempt, uint64_t num_samples) const;
+  double MeasurePsnr(const Attempt& attempt, uint64_t num_samples);
   double Goal() const;  // the value aimed at
   double TypicalSlope() const;
   // The attempts next to the goal: the coarsest that is not under it and the finest that is under it; values fall as lambda
@@ -82,6 +83,7 @@ class CandidateSearch {
   std::optional<double> offset_;     // dB that a measure showed more than the estimate, which hardly depends on lambda
   // Where set, the steps stay at this ln(lambda), and what is tried is the slope of the descent alone.
   std::optional<double> kept_steps_;
+  int measurements_ = 0;
 };
 
 }  // namespace lacerta

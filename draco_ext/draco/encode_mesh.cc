@@ -49,6 +49,7 @@ struct EncodedParts {
 EncodedParts FromZeroLevel(ZeroLevelStream zero, EncodeReport report, std::string reason) {
   report.reason = std::move(reason);
   report.levels = {{zero.mesh.positions.size(), zero.mesh.triangles.size(), zero.stream.size(), zero.distance, zero.psnr}};
+  report.measurements = zero.measurements;
   const size_t size = zero.stream.size();
   return {{std::move(zero.stream), {size}, std::move(report)}, zero.coding};
 }
@@ -60,6 +61,7 @@ StatusOr<EncodedParts> FromRefinement(const SurfaceDistanceMeter& meter, const C
   report.normal_share = chosen.normal_share;
   report.remesh_psnr = chosen.remesh_psnr;
   const MeasuredStream& coded = chosen.measured;
+  report.measurements = coded.measurements;
   LACERTA_RETURN_IF_ERROR(ReportLevels(meter, coded.stream, &report));
   EncodedMesh result;
   result.stream = coded.stream.base;

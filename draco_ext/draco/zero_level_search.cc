@@ -216,6 +216,7 @@ class ZeroLevelSearch {
     double step = trial.coding.step;
     double bias = 1;  // of squared distances measured in full against those by few samples
     std::optional<ZeroLevelStream> best;
+    int measurements = 0;
     double best_distortion = 0;
     for (int i = 0; i < num_tries || (!best->meets_target && i < 2 * num_tries); ++i) {
       LACERTA_ASSIGN_OR_RETURN(ZeroLevelCandidate::Coding coding, candidate.Code(step, descent_rounds, CodingEffort::kFull, target_.base_coding));
@@ -226,6 +227,7 @@ class ZeroLevelSearch {
                                                  : is_small_enough && distortion < 1.01 * distortion_;
       if (!best || may_be_better) {
         ZeroLevelStream stream = Measured(std::move(coding.coded));
+        ++measurements;
         if (coding.distortion > 0) bias = Square(stream.distance) / coding.distortion;
         if (!best || IsBetter(stream, best->meets_target, best->stream.size(), best->psnr)) {
           best = std::move(stream);
@@ -239,6 +241,7 @@ class ZeroLevelSearch {
         step = NextStep(step, std::max(distortion, bias * coding.distortion) * 1.005, candidate.fit_distortion()) * jitter;
       }
     }
+    best->measurements = measurements;
     return std::move(*best);
   }
 

@@ -18,6 +18,7 @@ struct ZeroLevelStream {
   double distance = 0;  // d_S to the input, model units
   double psnr = 0;      // dB
   bool meets_target = false;
+  int measurements = 0;  // of the surface distance that led to the stream
 };
 
 // The best zero-level stream found: fewest bytes at a PSNR, highest PSNR at a number of bytes, over numbers of triangles and steps

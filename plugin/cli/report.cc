@@ -39,6 +39,7 @@ Json ToJson(const EncodeReport& report) {
           {"reason", report.reason},
           {"normalShare", NumberOrNull(report.normal_share)},
           {"remeshPsnr", NumberOrNull(report.remesh_psnr)},
+          {"measurements", report.measurements},
           {"levels", std::move(levels)}};
 }
 

@@ -89,6 +89,7 @@ struct EncodeReport {
   std::string reason;             // why it is not progressive, or why the target could not be met; else empty
   double normal_share = 0.0;      // share of detail coefficients whose remeshed position lies on the normal line
   double remesh_psnr = 0.0;       // of the unquantized remesh
+  int measurements = 0;           // of the surface distance that it took to bring this stream to its target
   std::vector<LevelReport> levels;  // base first
 };
 
