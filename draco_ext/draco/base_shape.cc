@@ -23,8 +23,6 @@ namespace {
 
 // DecimateOptions::aspect_power of the simplifications that are compared.
 constexpr std::array<double, 2> kAspectPowers = {1.0, 2.0};
-// Sizes of the bases that are looked at, as shares of the typical one: a single size may be a fluke.
-constexpr std::array<double, 3> kSizes = {0.6, 1.0, 1.6};
 constexpr int kMostLevels = 3;  // finer details hardly depend on the base
 
 double LogDetailBits(const InputSurface& surface, const CollapseHistory& history, double num_base_vertices, double lambda) {
@@ -40,21 +38,23 @@ double LogDetailBits(const InputSurface& surface, const CollapseHistory& history
 
 }  // namespace
 
-CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& topology, double typical_base, double lambda) {
+CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& topology, double typical_base, double lambda,
+                                  const std::vector<double>& sizes) {
   std::array<std::optional<CollapseHistory>, kAspectPowers.size()> histories;
   tbb::parallel_for(size_t{0}, histories.size(), [&](size_t h) {
     DecimateOptions options;
     options.aspect_power = kAspectPowers[h];
     histories[h].emplace(Decimate(surface.mesh(), topology, options));
   });
-  std::array<double, kAspectPowers.size() * kSizes.size()> bits;
+  std::vector<double> bits(kAspectPowers.size() * sizes.size());
   tbb::parallel_for(size_t{0}, bits.size(), [&](size_t i) {
-    bits[i] = LogDetailBits(surface, *histories[i / kSizes.size()], typical_base * kSizes[i % kSizes.size()], lambda);
+    bits[i] = LogDetailBits(surface, *histories[i / sizes.size()], typical_base * sizes[i % sizes.size()], lambda);
   });
   size_t best = 0;
   double fewest = std::numeric_limits<double>::infinity();
   for (size_t h = 0; h < histories.size(); ++h) {
-    const double sum = std::accumulate(bits.begin() + h * kSizes.size(), bits.begin() + (h + 1) * kSizes.size(), 0.0);
+    const auto first = bits.begin() + static_cast<std::ptrdiff_t>(h * sizes.size());
+    const double sum = std::accumulate(first, first + static_cast<std::ptrdiff_t>(sizes.size()), 0.0);
     if (!(sum < fewest)) continue;
     best = h;
     fewest = sum;

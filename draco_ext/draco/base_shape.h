@@ -6,6 +6,8 @@
 #ifndef LACERTA_DRACO_BASE_SHAPE_H_
 #define LACERTA_DRACO_BASE_SHAPE_H_
 
+#include <vector>
+
 #include "common/subdivision.h"
 #include "remesh/collapse_history.h"
 #include "remesh/input_surface.h"
@@ -17,7 +19,9 @@ namespace lacerta {
 //   topology      of surface.mesh(), with its curves
 //   typical_base  vertices of the base meshes that streams of the quality asked for usually have
 //   lambda        slope of the rate-distortion curve, squared model units per bit
-CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& topology, double typical_base, double lambda);
+//   sizes         of bases that are looked at, as shares of the typical one; a single size may be a fluke
+CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& topology, double typical_base, double lambda,
+                                  const std::vector<double>& sizes = {0.6, 1.0, 1.6});
 
 }  // namespace lacerta
 

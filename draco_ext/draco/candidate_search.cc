@@ -28,8 +28,6 @@ constexpr double kPsnrAim = 0.06, kBytesAim = 0.005;
 constexpr int kScoreTries = 2;
 constexpr double kNearEnough = 0.4;  // dB: typical slopes will do
 constexpr int kMeetTries = 16, kEstimatedTries = 6;
-// Passes of the descent: scores compare candidates, which a few tell; the stream that is kept is worth more.
-constexpr int kScorePasses = 2, kMeetPasses = 5;
 
 }  // namespace
 
@@ -39,8 +37,8 @@ double UsualLambda(double psnr, double diagonal) {
 }
 
 CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double remesh_psnr, const SurfaceDistanceMeter& meter,
-                                 const ResolvedTarget& target, EncodeMode mode)
-    : candidate_(candidate), remesh_psnr_(remesh_psnr), meter_(meter), target_(target), mode_(mode) {
+                                 const ResolvedTarget& target, EncodeMode mode, const SearchEffort& effort)
+    : candidate_(candidate), remesh_psnr_(remesh_psnr), meter_(meter), target_(target), mode_(mode), effort_(effort) {
   start_ = std::log(UsualLambda(target_.is_rate ? kUsualPsnr : target_.psnr, meter_.diagonal()));
 }
 
@@ -127,7 +125,7 @@ StatusOr<double> CandidateSearch::Score() {
   double least_miss = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kScoreTries; ++i) {
     const double log_lambda = NextGuess();
-    LACERTA_ASSIGN_OR_RETURN(const Attempt attempt, Try(log_lambda, kScorePasses));
+    LACERTA_ASSIGN_OR_RETURN(const Attempt attempt, Try(log_lambda, effort_.score_passes));
     const double miss = Goal() - attempt.value;
     if (std::fabs(miss) >= least_miss) continue;
     least_miss = std::fabs(miss);
@@ -148,6 +146,7 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
   double high_enough = target_.is_rate ? high : kFirstPsnrSlack;  // estimates lead near enough, in a few tries
   const auto is_met = [&](const Attempt& a) { return excess(a) >= low && excess(a) <= high_enough; };
   std::optional<Attempt> best, unmeasured;
+  std::map<double, double> measured;  // dB by ln(lambda), where the steps went with it
   // Safely beyond the target, then just so, then on its wrong side.
   const auto rank = [&](const Attempt& a) { return excess(a) >= low && excess(a) <= high ? 2 : keeps_promise(a) ? 1 : 0; };
   const auto consider = [&](Attempt attempt) {
@@ -156,18 +155,20 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
   };
   double last = start_;
   for (int i = 0; i < kMeetTries && !CannotReach() && !(best && is_met(*best)); ++i) {
+    if (measurements_ >= kMostMeasurements && best && rank(*best) == 2) break;
     const bool by_estimate = i < kEstimatedTries;
     double log_lambda = NextGuess();
     if (i == kEstimatedTries && !target_.is_rate) {  // estimates will not do: from here on values are measured
       high_enough = high;
       if (best && is_met(*best)) break;
-      log_lambda = start_ = last;
-      values_.clear();
+      start_ = last;
+      values_ = measured;
       kept_steps_.reset();
       offset_ = 0;
+      log_lambda = NextGuess();
     }
     last = log_lambda;
-    StatusOr<Attempt> tried = Try(log_lambda, kMeetPasses);
+    StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes);
     if (!tried.ok() && (best || unmeasured)) break;  // so coarse a lattice cannot carry the base: what there is must do
     LACERTA_ASSIGN_OR_RETURN(Attempt attempt, std::move(tried));
     if (!target_.is_rate) {
@@ -177,6 +178,7 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
         continue;
       }
       attempt.psnr = MeasurePsnr(attempt, kSamples);
+      if (!kept_steps_) measured[log_lambda] = attempt.psnr;
       if (by_estimate) offset_ = attempt.psnr - attempt.value;
       if (!by_estimate) attempt.value = values_[log_lambda] = attempt.psnr;
       unmeasured.reset();

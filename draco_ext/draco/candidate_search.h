@@ -7,6 +7,7 @@
 
 #include "draco/base_coding.h"
 #include "draco/normal_mesh_candidate.h"
+#include "draco/search_effort.h"
 #include "lacerta/codec.h"
 #include "lacerta/status.h"
 #include "lacerta/surface_distance.h"
@@ -37,7 +38,9 @@ class CandidateSearch {
  public:
   // remesh_psnr: of the unquantized remesh, dB.
   CandidateSearch(const NormalMeshCandidate& candidate, double remesh_psnr, const SurfaceDistanceMeter& meter,
-                  const ResolvedTarget& target, EncodeMode mode);
+                  const ResolvedTarget& target, EncodeMode mode, const SearchEffort& effort = SearchEffort());
+
+  static constexpr int kMostMeasurements = 6;
 
   // Codes near the target with an attempt or two and extrapolates to it: ln(bytes) at the PSNR, or -PSNR at the bytes. Smaller is
   // better.
@@ -48,7 +51,9 @@ class CandidateSearch {
   void BeginAt(double start) { start_ = start; }
 
   // Codes until the target is met: bytes within 2 % and never over, or a PSNR less than 0.3 dB over and never under. Where that
-  // fails, the attempt that comes nearest, with meets_target telling whether it keeps to the side promised.
+  // fails, the attempt that comes nearest, with meets_target telling whether it keeps to the side promised. The surface distance is
+  // measured kMostMeasurements times at most, those of Score included, but where the curve of a small mesh jumps so much that none of them
+  // is within the promise.
   StatusOr<MeasuredStream> Meet();
 
  private:
@@ -78,6 +83,7 @@ class CandidateSearch {
   const SurfaceDistanceMeter& meter_;
   const ResolvedTarget target_;
   const EncodeMode mode_;
+  const SearchEffort effort_;
   double start_;                     // ln(lambda) to begin with
   std::map<double, double> values_;  // of the attempts so far, by ln(lambda): ln(bytes) at a rate, else estimated dB
   std::optional<double> offset_;     // dB that a measure showed more than the estimate, which hardly depends on lambda

@@ -10,6 +10,7 @@
 #include "draco/custom_form.h"
 #include "draco/decoded_distance.h"
 #include "draco/rate_control.h"
+#include "draco/search_effort.h"
 #include "draco/still_part.h"
 #include "draco/subdivided_input.h"
 #include "draco/zero_level_search.h"
@@ -112,11 +113,11 @@ EncodedMesh InForm(StreamForm form, EncodedParts parts) {
 
 // The mesh on its own connectivity where that is subdivided and reaches the target; none else.
 std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter,
-                                             const ResolvedTarget& target, EncodeMode mode) {
+                                             const ResolvedTarget& target, const EncodeOptions& options) {
   if (mesh.triangles.size() < SurfacePartsOptions().fewest_faces) return std::nullopt;
   const std::optional<Unsubdivided> split = UndoSubdivision(mesh);
   if (!split) return std::nullopt;
-  StatusOr<ChosenStream> chosen = CodeSubdivided(mesh, *split, meter, target, mode);
+  StatusOr<ChosenStream> chosen = CodeSubdivided(mesh, *split, meter, target, options.mode, EffortOf(options.effort));
   if (!chosen.ok() || !chosen.value().measured.meets_target) return std::nullopt;
   return std::move(chosen).value();
 }
@@ -129,7 +130,7 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, const SurfaceDist
   };
   if (options.levels == LevelChoice::kNever) return Unsupported("no refinement levels were asked for");
   progress(0.0, "looking at the surface");
-  if (const std::optional<ChosenStream> subdivided = EncodeSubdivided(mesh, meter, target, options.mode)) {
+  if (const std::optional<ChosenStream> subdivided = EncodeSubdivided(mesh, meter, target, options)) {
     report.subdivided_input = true;
     return FromRefinement(meter, *subdivided, target.base_coding, report, ReasonForMiss(subdivided->measured, target));
   }
@@ -140,13 +141,13 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, const SurfaceDist
   const double psnr = TypicalPsnr(target, static_cast<double>(mesh.positions.size()));
   std::optional<CollapseHistory> history;
   std::optional<SimplificationSequence> sequence;
-  tbb::parallel_invoke([&] { history.emplace(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), UsualLambda(psnr, meter.diagonal()))); },
+  tbb::parallel_invoke([&] { history.emplace(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), UsualLambda(psnr, meter.diagonal()), EffortOf(options.effort).shape_sizes)); },
                        [&] {
                          if (options.levels == LevelChoice::kWhereTheyPay) sequence.emplace(mesh);
                        });
   const StillPart still = PrepareStillPart(parts.still, parts.refined, DistanceOfPsnr(psnr, meter.diagonal()));
   const RefinableSurface refinable{surface, *history, still.mesh};
-  LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen, CodeAtTarget(refinable, meter, target, options.mode, options.progress));
+  LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen, CodeAtTarget(refinable, meter, target, options.mode, options.progress, EffortOf(options.effort)));
   report.parts = {parts.refined_components,       parts.still_components, still.hidden_components,
                   parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices};
   progress(0.95, "comparing with Draco");

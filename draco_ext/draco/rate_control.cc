@@ -17,13 +17,7 @@ namespace lacerta {
 namespace {
 
 // Base sizes tried: a ladder, walked from where streams of that quality have their base on typical surfaces.
-constexpr double kFirstRung = 48, kRungRatio = 1.5;
-
-uint32_t RungSize(int rung) { return static_cast<uint32_t>(std::lround(kFirstRung * std::pow(kRungRatio, rung))); }
-
-int RungOfSize(double size) {
-  return std::max(0, static_cast<int>(std::lround(std::log(size / kFirstRung) / std::log(kRungRatio))));
-}
+constexpr double kFirstRung = 48;
 
 // Levels that bring a base to at least as many vertices as the input has; chords of the remesh then cost little.
 int LevelsFor(double num_base_vertices, double num_input_vertices) {
@@ -44,13 +38,13 @@ struct Rung {
   double start = 0;                                        // of CandidateSearch::start, where there is a score
 };
 
-// Candidates that are taken to the target at a time, and in all. More are not kept: each is as large as the input.
-constexpr size_t kAtATime = 2, kMost = 4;
+// Candidates that are taken to the target in all. No more are kept than are taken at a time: each is as large as the input.
+constexpr size_t kMost = 4;
 
 class Ladder {
  public:
-  Ladder(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode)
-      : surface_(surface), meter_(meter), target_(target), mode_(mode) {
+  Ladder(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode, const SearchEffort& effort)
+      : surface_(surface), meter_(meter), target_(target), mode_(mode), effort_(effort) {
     num_input_ = static_cast<double>(surface.surface.mesh().positions.size());
     constexpr double kLargestBase = 0.5;  // of the input's vertices
     first_ = RungOfSize(num_input_ - static_cast<double>(surface.history.num_collapses()));
@@ -65,7 +59,7 @@ class Ladder {
     for (;;) {
       if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(rungs_.size())), "choosing the base mesh");
       const std::vector<int> ranking = Ranking();
-      for (size_t i = kAtATime; i < ranking.size(); ++i) LetGo(&rungs_[ranking[i]]);
+      for (size_t i = effort_.at_a_time; i < ranking.size(); ++i) LetGo(&rungs_[ranking[i]]);
       const int best = ranking.front(), highest = rungs_.rbegin()->first;
       std::vector<int> next;
       if (std::isfinite(rungs_[best].score)) {
@@ -80,7 +74,8 @@ class Ladder {
       } else if (highest < last_) {  // nothing reaches the target yet: larger bases
         next = {highest + 1, highest + 2};
       }
-      if (next.empty()) {
+      const bool is_enough = rungs_.size() >= effort_.enough_sizes && std::isfinite(rungs_[best].score);
+      if (next.empty() || is_enough) {
         std::vector<int> result;
         for (const int r : ranking) {
           if (rungs_[r].status.ok()) result.push_back(r);
@@ -106,6 +101,12 @@ class Ladder {
   }
 
  private:
+  uint32_t RungSize(int rung) const { return static_cast<uint32_t>(std::lround(kFirstRung * std::pow(effort_.size_ratio, rung))); }
+
+  int RungOfSize(double size) const {
+    return std::max(0, static_cast<int>(std::lround(std::log(size / kFirstRung) / std::log(effort_.size_ratio))));
+  }
+
   // Whether rung a scores so much worse than b that it hardly is a fluke: neighbouring rungs are rarely further from the smooth curve
   // of all rungs.
   bool IsMuchWorse(const Rung& a, const Rung& b) const { return a.score >= b.score + (target_.is_rate ? 0.3 : 0.03); }
@@ -158,7 +159,7 @@ class Ladder {
       const double next_vertices = 4 * static_cast<double>(remesh.positions.size());
       if (rung->remesh_psnr > goal + kComfort || next_vertices > kMostVertices * num_input_) break;
     }
-    rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_);
+    rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_, effort_);
     return Status();
   }
 
@@ -188,6 +189,7 @@ class Ladder {
   const SurfaceDistanceMeter& meter_;
   const ResolvedTarget& target_;
   const EncodeMode mode_;
+  const SearchEffort effort_;
   double num_input_;
   int first_, last_;  // rungs: of the coarsest base that the history has, and of the largest worth trying
   std::map<int, Rung> rungs_;
@@ -233,14 +235,14 @@ StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_
 }
 
 StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
-                                    const std::function<void(double, const char*)>& progress) {
-  Ladder ladder(surface, meter, target, mode);
+                                    const std::function<void(double, const char*)>& progress, const SearchEffort& effort) {
+  Ladder ladder(surface, meter, target, mode, effort);
   LACERTA_ASSIGN_OR_RETURN(const std::vector<int> rungs, ladder.FindBest(progress));
   if (progress) progress(0.8, "meeting the target");
-  // Scores are estimates: two candidates at a time are taken to the target until one meets it, and the better of them is kept.
+  // Scores are estimates: a few candidates at a time are taken to the target until one meets it, and the better of them is kept.
   std::optional<ChosenStream> best;
-  for (size_t first = 0; first < std::min(kMost, rungs.size()); first += kAtATime) {
-    const size_t count = std::min(kAtATime, rungs.size() - first);
+  for (size_t first = 0; first < std::min(kMost, rungs.size()); first += effort.at_a_time) {
+    const size_t count = std::min(effort.at_a_time, rungs.size() - first);
     std::vector<StatusOr<ChosenStream>> met(count, InternalError("not tried"));
     ForEachCandidate(static_cast<double>(surface.surface.mesh().positions.size()), count,
                      [&](size_t i) { met[i] = ladder.Meet(rungs[first + i]); });

@@ -30,7 +30,7 @@ struct ChosenStream {
 // target the nearest stream is returned, and says so.
 // progress: as in EncodeOptions, may be empty.
 StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
-                                    const std::function<void(double, const char*)>& progress);
+                                    const std::function<void(double, const char*)>& progress, const SearchEffort& effort = SearchEffort());
 
 }  // namespace lacerta
 

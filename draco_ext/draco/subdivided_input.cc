@@ -52,12 +52,12 @@ StatusOr<NormalMeshCandidate> SubdividedCandidate(const TriangleMesh& input, con
 }
 
 StatusOr<ChosenStream> CodeSubdivided(const TriangleMesh& input, const Unsubdivided& split, const SurfaceDistanceMeter& meter,
-                                      const ResolvedTarget& target, EncodeMode mode) {
+                                      const ResolvedTarget& target, EncodeMode mode, const SearchEffort& effort) {
   LACERTA_ASSIGN_OR_RETURN(const NormalMeshCandidate candidate, SubdividedCandidate(input, split, target.base_coding));
   ChosenStream chosen;
   chosen.remesh_psnr = Psnr(0, meter.diagonal());
   chosen.normal_share = NormalShare(candidate.normal_mesh());
-  CandidateSearch search(candidate, chosen.remesh_psnr, meter, target, mode);
+  CandidateSearch search(candidate, chosen.remesh_psnr, meter, target, mode, effort);
   LACERTA_RETURN_IF_ERROR(search.Score().status());  // a good start, at little cost
   LACERTA_ASSIGN_OR_RETURN(chosen.measured, search.Meet());
   if (target.is_rate && !TellsVertices(chosen.measured.stream.decoded.positions, candidate.RemeshedSurface())) {

@@ -20,7 +20,7 @@ StatusOr<NormalMeshCandidate> SubdividedCandidate(const TriangleMesh& input, con
 // Codes it at the target; the nearest stream where that is out of reach, which the result says. Fails as above, and with
 // kUnsupported where the bytes of a rate target do not tell vertices from their neighbors.
 StatusOr<ChosenStream> CodeSubdivided(const TriangleMesh& input, const Unsubdivided& split, const SurfaceDistanceMeter& meter,
-                                      const ResolvedTarget& target, EncodeMode mode);
+                                      const ResolvedTarget& target, EncodeMode mode, const SearchEffort& effort = SearchEffort());
 
 }  // namespace lacerta
 

@@ -225,7 +225,7 @@ class ZeroLevelSearch {
       const bool is_small_enough = !best || !best->meets_target || coding.bytes < best->stream.size();
       const bool may_be_better = target_.is_rate ? bytes <= target_.bytes && (best_distortion == 0 || distortion < best_distortion)
                                                  : is_small_enough && distortion < 1.01 * distortion_;
-      if (!best || may_be_better) {
+      if (!best || (may_be_better && (measurements < CandidateSearch::kMostMeasurements || !best->meets_target))) {
         ZeroLevelStream stream = Measured(std::move(coding.coded));
         ++measurements;
         if (coding.distortion > 0) bias = Square(stream.distance) / coding.distortion;

@@ -23,10 +23,11 @@ struct PackArguments {
   double bits_per_vertex = 0.0;
   double psnr = 0.0;
   double error = 0.0;
-  std::string fallback = "draco";  // one of the names that AddPackCommand lists, like the next two
+  std::string fallback = "draco";  // one of the names that AddPackCommand lists, like the next four
   std::string form = "draco";
   std::string mode = "default";
   std::string levels = "any";
+  std::string effort = "normal";
   bool json = false;
 };
 
@@ -144,6 +145,7 @@ int RunPack(const PackArguments& arguments) {
                    : arguments.levels == "always" ? LevelChoice::kAlways
                                                   : LevelChoice::kWhereTheyPay;
   options.mode = arguments.mode == "paper" ? EncodeMode::kPaper : EncodeMode::kDefault;
+  options.effort = arguments.effort == "fast" ? Effort::kFast : arguments.effort == "best" ? Effort::kBest : Effort::kNormal;
   options.progress = progress.Callback();
   const std::string extension = Extension(arguments.output);
   StatusOr<int> result = InvalidArgument(arguments.output + ": the output has to be a .glb or .drc file");
@@ -178,6 +180,8 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
       ->check(CLI::IsMember({"default", "paper"}));
   pack->add_option("--levels", arguments->levels, "any (default): refinement unless a simplified mesh without levels is clearly smaller; always; 0: never")
       ->check(CLI::IsMember({"any", "always", "0"}));
+  pack->add_option("--effort", arguments->effort, "fast: a third of the time and some more bytes; normal (default); best: longer, for somewhat fewer bytes")
+      ->check(CLI::IsMember({"fast", "normal", "best"}));
   pack->add_flag("--json", arguments->json, "Print a report as JSON");
   pack->footer(kExitCodeHelp);
   pack->callback([arguments, exit_code] { *exit_code = RunPack(*arguments); });

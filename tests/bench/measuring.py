@@ -75,6 +75,7 @@ def pack_and_check(lacerta, mesh, *options):
         "triangles": finest["triangles"],
         "normal_share": encode["normalShare"],
         "remesh_psnr": encode["remeshPsnr"],
+        "measurements": encode["measurements"],
         "target_met": report["targetMet"],
         "reason": encode["reason"],
         "pack_s": pack_s,

@@ -49,11 +49,19 @@ enum class LevelChoice {
   kNever,         // a simplified mesh
 };
 
+// How much the encoder tries; decoding takes the same time whatever it was.
+enum class Effort {
+  kFast,    // fewer base sizes and passes: about a third of the time, a few percent more bytes
+  kNormal,
+  kBest,    // more of both: several times the time
+};
+
 struct EncodeOptions {
   EncodeTarget target;
   StreamForm form = StreamForm::kDraco;
   EncodeMode mode = EncodeMode::kDefault;
   LevelChoice levels = LevelChoice::kWhereTheyPay;
+  Effort effort = Effort::kNormal;
   // Called now and then with the finished share (0..1) and what is being done; may be empty.
   std::function<void(double share, const char* stage)> progress;
 };

@@ -45,6 +45,8 @@ TEST_F(CandidateSearchTest, MeetsPsnrFromBothSides) {
     EXPECT_GE(stream.psnr, psnr);
     EXPECT_LT(stream.psnr, psnr + 0.45);  // a coefficient of so small a mesh is worth 0.5 dB
     EXPECT_DOUBLE_EQ(stream.psnr, PsnrOf(stream.stream.FinestMesh()));
+    EXPECT_GE(stream.measurements, 2);  // a rough one, and the one that shows that the target is met
+    EXPECT_LE(stream.measurements, 12);  // 6 but for jumps of 1 dB, of which so small a mesh has many
   }
 }
 
@@ -73,6 +75,8 @@ TEST_F(CandidateSearchTest, SaysWhereTheRemeshIsTheLimit) {
   EXPECT_FALSE(stream.meets_target);
   EXPECT_LT(stream.psnr, remesh_psnr_ + 5);
   EXPECT_GT(stream.psnr, remesh_psnr_ - 3);
+  EXPECT_GE(stream.measurements, 1);
+  EXPECT_LE(stream.measurements, 6);
 }
 
 TEST_F(CandidateSearchTest, SaysWhereTheBaseAloneIsOverTheBytes) {

@@ -63,6 +63,8 @@ TEST(EncodeMeshTest, KeepsPsnrTargetsFromBothSides) {
       EXPECT_GE(psnr, target);
       EXPECT_LT(psnr, target + 0.3);
       EXPECT_EQ(encoded.report.reason, "");
+      EXPECT_GE(encoded.report.measurements, 2);
+      EXPECT_LE(encoded.report.measurements, 6);
     }
   }
 }

@@ -12,6 +12,7 @@
 #include <limits>
 #include <mutex>
 #include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -75,6 +76,30 @@ TEST(CodeAtTargetTest, BasesGrowWithTheQualityAskedFor) {
 }
 
 // Each keeps to itself, so this is all that the size of the input may change.
+TEST(CodeAtTargetTest, EffortTradesBaseSizesForBytes) {
+  const Coder coder(shapes::BumpySphere(5, 0.2f, 0.002f));
+  struct Outcome {
+    double bytes;
+    int rounds;  // of base sizes
+  };
+  const auto code = [&](Effort effort) {
+    int rounds = 0;
+    const auto progress = [&](double, const char* stage) { rounds += std::string(stage) == "choosing the base mesh"; };
+    const ChosenStream chosen =
+        CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, {false, 0, 58}, EncodeMode::kDefault, progress, EffortOf(effort)).value();
+    EXPECT_TRUE(chosen.measured.meets_target);
+    return Outcome{static_cast<double>(chosen.measured.stream.size()), rounds};
+  };
+  const Outcome fast = code(Effort::kFast), normal = code(Effort::kNormal), best = code(Effort::kBest);
+  EXPECT_EQ(fast.rounds, 1);
+  EXPECT_GE(normal.rounds, fast.rounds);
+  EXPECT_GT(best.rounds, fast.rounds);
+  EXPECT_GE(fast.bytes, 0.98 * normal.bytes);
+  EXPECT_LE(fast.bytes, 1.2 * normal.bytes);
+  EXPECT_GE(best.bytes, 0.85 * normal.bytes);
+  EXPECT_LE(best.bytes, 1.02 * normal.bytes);
+}
+
 TEST(ForEachCandidateTest, LargeInputsAreWorkedOnOneByOne) {
   for (const double num_vertices : {0.999 * kOneCandidateAtATime, kOneCandidateAtATime}) {
     std::vector<size_t> order;

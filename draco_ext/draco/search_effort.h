@@ -1,0 +1,33 @@
+// How much the search for a stream tries.
+#ifndef LACERTA_DRACO_SEARCH_EFFORT_H_
+#define LACERTA_DRACO_SEARCH_EFFORT_H_
+
+#include <cstddef>
+#include <vector>
+
+#include "lacerta/codec.h"
+
+namespace lacerta {
+
+struct SearchEffort {
+  double size_ratio = 1.5;   // between neighbors of the base sizes tried
+  size_t enough_sizes = 100;  // after so many the best is taken, worse neighbors on either side or not
+  size_t at_a_time = 2;      // of those, taken to the target together: the best of them is kept
+  // Passes of the descent: scores compare candidates, which a few tell; the stream that is kept is worth more.
+  int score_passes = 2, meet_passes = 5;
+  std::vector<double> shape_sizes = {0.6, 1.0, 1.6};  // as in BestShapedHistory
+};
+
+// docs/results/effort_table.md has what they cost and gain.
+inline SearchEffort EffortOf(Effort effort) {
+  switch (effort) {
+    case Effort::kFast: return {2.25, 3, 1, 1, 3, {1.0}};
+    case Effort::kNormal: return {};
+    case Effort::kBest: return {1.225, 100, 4, 3, 10, {0.6, 1.0, 1.6}};
+  }
+  return {};
+}
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DRACO_SEARCH_EFFORT_H_
