@@ -1,5 +1,5 @@
 // Rate-distortion points of the coders of the paper's comparison on one mesh, as CSV: paper_figures [--base N]
-// [--levels N] [--coder NAME] FILE... What the columns mean is in docs/results/paper_figures.md, which
+// [--levels N] [--coder NAME] [--samples N] [--lowest RATE] FILE... What the columns mean is in docs/results/paper_figures.md, which
 // tests/bench/paper_figures makes of them.
 #include <cmath>
 #include <cstdio>
@@ -25,10 +25,11 @@ struct Options {
   uint32_t base_vertices = 200;
   int levels = 5;
   std::string coder;  // this curve alone; empty: all
+  uint64_t remesh_samples = 0;  // of the distances to the remesh; 0: as many as these take
+  double lowest_rate = 0.25;    // b/iv
 };
 
-constexpr double kLowestRate = 0.25;      // b/iv
-constexpr double kHighestRate = 5.0;      // of the figures
+constexpr double kHighestRate = 5.0;      // b/iv, of the figures
 constexpr double kHighestModelRate = 20;  // of Table I
 constexpr uint64_t kSamples = 100'000;
 // Table I is about differences below a thousandth at high rates, and of percents at low ones.
@@ -48,8 +49,8 @@ double VertexError(const std::vector<Vec3f>& decoded, const std::vector<Vec3f>& 
 class Comparison {
  public:
   Comparison(std::string name, const TriangleMesh& input, const Remeshes& remeshes,
-             const SurfaceDistanceMeter& to_input, std::string coder)
-      : name_(std::move(name)), coder_(std::move(coder)), input_(input), remeshes_(remeshes), to_input_(to_input) {}
+             const SurfaceDistanceMeter& to_input, const Options& options)
+      : name_(std::move(name)), options_(options), input_(input), remeshes_(remeshes), to_input_(to_input) {}
 
   // The finest level of a mesh over the common base.
   TriangleMesh Finest(const std::vector<Vec3f>& positions) const {
@@ -68,7 +69,7 @@ class Comparison {
   };
   // Codes with one parameter after the other until the highest rate is reached, and prints a row for each.
   Status Curve(const CurveOptions& curve, const std::function<StatusOr<CodedMesh>(double)>& code) const {
-    if (!coder_.empty() && coder_ != curve.coder) return Status();
+    if (!options_.coder.empty() && options_.coder != curve.coder) return Status();
     const TriangleMesh unquantized = Finest(curve.positions);
     LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter to_remesh, SurfaceDistanceMeter::Create(unquantized));
     LACERTA_ASSIGN_OR_RETURN(const double limit, PsnrOf(unquantized));
@@ -76,14 +77,14 @@ class Comparison {
     for (double parameter = curve.first_parameter; rate < curve.highest_rate; parameter *= curve.ratio) {
       LACERTA_ASSIGN_OR_RETURN(const CodedMesh coded, code(parameter));
       rate = 8.0 * static_cast<double>(coded.bytes) / static_cast<double>(input_.positions.size());
-      if (rate < kLowestRate) continue;
+      if (rate < options_.lowest_rate) continue;
       const TriangleMesh decoded = Finest(coded.positions);
       LACERTA_ASSIGN_OR_RETURN(const double psnr, PsnrOf(decoded));
       SurfaceDistance moved;
       if (curve.against_remesh) {
-        const auto options =
-            SurfaceDistanceOptions::RmsOnly(rate < kManySamplesFrom ? kFewRemeshSamples : kManyRemeshSamples);
-        LACERTA_ASSIGN_OR_RETURN(moved, to_remesh.Measure(decoded, options));
+        const uint64_t enough = rate < kManySamplesFrom ? kFewRemeshSamples : kManyRemeshSamples;
+        const uint64_t samples = options_.remesh_samples > 0 ? options_.remesh_samples : enough;
+        LACERTA_ASSIGN_OR_RETURN(moved, to_remesh.Measure(decoded, SurfaceDistanceOptions::RmsOnly(samples)));
       }
       const double diagonal = to_input_.diagonal();
       std::printf("%s,%s,%s,%.6g,%zu,%.5f,%.4f,%.3f,%.8g,%.8g,%.8g\n", name_.c_str(), curve.coder, curve.remesh,
@@ -96,7 +97,7 @@ class Comparison {
 
   // The original mesh at single rates.
   Status SingleRates() const {
-    if (!coder_.empty() && coder_ != "tg") return Status();
+    if (!options_.coder.empty() && options_.coder != "tg") return Status();
     for (const int bits : {6, 7, 8, 9, 10, 11, 12}) {
       LACERTA_ASSIGN_OR_RETURN(const SingleRateMesh coded, CodeSingleRate(input_, bits));
       LACERTA_ASSIGN_OR_RETURN(const double psnr, PsnrOf(coded.mesh));
@@ -114,7 +115,8 @@ class Comparison {
     return Psnr(d.Rms(), to_input_.diagonal());
   }
 
-  std::string name_, coder_;
+  std::string name_;
+  const Options options_;
   const TriangleMesh& input_;
   const Remeshes& remeshes_;
   const SurfaceDistanceMeter& to_input_;
@@ -133,7 +135,7 @@ Status Compare(const std::string& path, const Options& options) {
   LACERTA_ASSIGN_OR_RETURN(const Remeshes remeshes, MakeRemeshes(cleaned.mesh, options.base_vertices, options.levels));
   LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(cleaned.mesh));
   const Comparison comparison(std::filesystem::path(path).stem().string(), cleaned.mesh, remeshes, meter,
-                              options.coder);
+                              options);
   const double diagonal = meter.diagonal();
   const double first_lambda = 3e-9 * diagonal * diagonal, lambda_ratio = std::pow(10.0, -0.4);
   const double first_threshold = 8e-2 * diagonal, threshold_ratio = std::sqrt(0.5);
@@ -186,6 +188,10 @@ int main(int argc, char** argv) {
       options.levels = std::atoi(argv[++i]);
     } else if (word == "--coder" && i + 1 < argc) {
       options.coder = argv[++i];
+    } else if (word == "--samples" && i + 1 < argc) {
+      options.remesh_samples = static_cast<uint64_t>(std::atoll(argv[++i]));
+    } else if (word == "--lowest" && i + 1 < argc) {
+      options.lowest_rate = std::atof(argv[++i]);
     } else if (const lacerta::Status status = lacerta::baselines::Compare(word, options); !status.ok()) {
       std::fprintf(stderr, "%s: %s\n", word.c_str(), status.message().c_str());
       ++failures;
