@@ -21,13 +21,14 @@ constexpr double kFirstLambda = 1.2e-4;  // of the squared distance aimed at, pe
 constexpr double kUsualPsnr = 70;        // where to begin when only the rate is given
 
 // What counts as met: [psnr, psnr + 0.3) and (0.98, 1] of the bytes, with a margin for the noise of the measure.
-constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.24, kFirstPsnrSlack = 0.12;
+constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.2;
 constexpr double kBytesSlack = 0.018;
 // What is aimed at lies inside of that, so that jumps of the curve hardly ever skip it.
 constexpr double kPsnrAim = 0.06, kBytesAim = 0.005;
 constexpr int kScoreTries = 2;
 constexpr double kNearEnough = 0.4;  // dB: typical slopes will do
 constexpr int kMeetTries = 16, kEstimatedTries = 6;
+constexpr double kStepChange = 1.5;  // between slopes of steps that are tried
 
 }  // namespace
 
@@ -43,21 +44,32 @@ CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double re
 }
 
 double CandidateSearch::Goal() const {
-  return target_.is_rate ? std::log(target_.bytes) - kBytesAim : target_.psnr + kPsnrAim - offset_.value_or(0);
+  if (target_.is_rate) return std::log(target_.bytes) - kBytesAim;
+  const double psnr = target_.psnr + kPsnrAim - offset_.value_or(0);
+  return values_are_measured_ ? psnr : CodingPsnr(psnr);
+}
+
+double CandidateSearch::CodingPsnr(double psnr) const {
+  constexpr double kLeastShare = 0.03;  // of the squared distance, where the remesh alone is as far as that
+  const double distance = DistanceOfPsnr(psnr, meter_.diagonal()), remesh_distance = DistanceOfPsnr(remesh_psnr_, meter_.diagonal());
+  const double rest = distance * distance - remesh_distance * remesh_distance;
+  return Psnr(std::sqrt(std::max(rest, kLeastShare * distance * distance)), meter_.diagonal());
 }
 
 double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogBytesPerLogLambda : kPsnrPerLogLambda; }
 
 StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, int passes) {
   Attempt attempt;
-  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({std::exp(kept_steps_.value_or(log_lambda)), std::exp(log_lambda), passes}, mode_));
+  const double lambda = std::exp(log_lambda);
+  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({lambda, lambda * steps_.details, lambda * steps_.base, steps_.last_detailed, passes}, mode_));
   const double estimate = EstimatePsnr(attempt.stream);
   if (!offset_) {
     constexpr uint64_t kRoughSamples = 50'000;
     offset_ = MeasurePsnr(attempt, kRoughSamples) - estimate;
   }
   attempt.psnr = estimate + *offset_;
-  attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : estimate;
+  attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : CodingPsnr(estimate);
+  attempt.log_lambda = log_lambda;
   values_[log_lambda] = attempt.value;
   return attempt;
 }
@@ -100,24 +112,18 @@ double CandidateSearch::NextGuess() const {
   return nearest->first + std::clamp(1.1 * step, -4.0, 4.0) + (step < 0 ? -0.02 : 0.02);
 }
 
-// Where the attempts on both sides of the goal are hardly apart in lambda and still miss it, the steps jump between them: those of
-// the finer side are kept, and the descent makes up the rest.
-void CandidateSearch::KeepStepsAtJump() {
-  constexpr double kHardlyApart = 0.06;
-  if (kept_steps_ || mode_ == EncodeMode::kPaper) return;
-  const Bracket bracket = AroundGoal();
-  if (!IsBracket(bracket) || bracket.below->first - bracket.above->first > kHardlyApart) return;
-  const std::pair<double, double> finer = *bracket.above;
-  kept_steps_ = finer.first;
-  values_ = {{finer.first, finer.second}};
-}
-
 // A finer slope no longer raises the PSNR: the remesh itself is the limit.
 bool CandidateSearch::CannotReach() const {
-  if (target_.is_rate || kept_steps_ || values_.size() < 3) return false;
+  if (!values_are_measured_ || values_.size() < 3) return false;
   const auto first = values_.begin(), second = std::next(first);
   constexpr double kApart = 0.1;  // nearer, and noise decides
   return first->second < Goal() && second->first - first->first > kApart && (first->second - second->second) < 0.15 * (second->first - first->first);
+}
+
+double CandidateSearch::Merit(const Attempt& attempt) const {
+  const double miss = Goal() - attempt.value;
+  return target_.is_rate ? -(attempt.psnr + miss / kLogBytesPerDecibel)
+                         : std::log(static_cast<double>(attempt.stream.size())) + kLogBytesPerDecibel * miss;
 }
 
 StatusOr<double> CandidateSearch::Score() {
@@ -125,77 +131,127 @@ StatusOr<double> CandidateSearch::Score() {
   double least_miss = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kScoreTries; ++i) {
     const double log_lambda = NextGuess();
+    steps_.last_detailed = candidate_.LastDetailed(std::exp(log_lambda));
     LACERTA_ASSIGN_OR_RETURN(const Attempt attempt, Try(log_lambda, effort_.score_passes));
     const double miss = Goal() - attempt.value;
     if (std::fabs(miss) >= least_miss) continue;
     least_miss = std::fabs(miss);
     start_ = log_lambda + miss / TypicalSlope();
-    const double log_bytes = std::log(static_cast<double>(attempt.stream.size()));
-    score = target_.is_rate ? -(attempt.psnr + miss / kLogBytesPerDecibel) : log_bytes + kLogBytesPerDecibel * miss;
+    score = Merit(attempt);
     if (least_miss < kNearEnough * (target_.is_rate ? -kLogBytesPerDecibel : 1.0)) break;
   }
   return score;
 }
 
-StatusOr<MeasuredStream> CandidateSearch::Meet() {
-  values_.clear();  // those of the scores: fewer passes
-  constexpr uint64_t kSamples = 200'000;
-  const double low = target_.is_rate ? -kBytesSlack : kPsnrMargin, high = target_.is_rate ? 0 : kPsnrSlack;  // beyond the target
-  const auto excess = [&](const Attempt& a) { return target_.is_rate ? a.value - std::log(target_.bytes) : a.psnr - target_.psnr; };
-  const auto keeps_promise = [&](const Attempt& a) { return target_.is_rate ? excess(a) <= 0 : excess(a) >= 0; };
-  double high_enough = target_.is_rate ? high : kFirstPsnrSlack;  // estimates lead near enough, in a few tries
-  const auto is_met = [&](const Attempt& a) { return excess(a) >= low && excess(a) <= high_enough; };
-  std::optional<Attempt> best, unmeasured;
-  std::map<double, double> measured;  // dB by ln(lambda), where the steps went with it
-  // Safely beyond the target, then just so, then on its wrong side.
-  const auto rank = [&](const Attempt& a) { return excess(a) >= low && excess(a) <= high ? 2 : keeps_promise(a) ? 1 : 0; };
-  const auto consider = [&](Attempt attempt) {
-    const bool nearer = best && std::fabs(excess(attempt)) < std::fabs(excess(*best));
-    if (!best || (rank(attempt) == rank(*best) ? nearer : rank(attempt) > rank(*best))) best = std::move(attempt);
+// The law of the steps holds for surfaces on the whole; what suits this one is found by trying, one choice after the other, around the
+// slope that the target is thought to need.
+void CandidateSearch::SuitSteps() {
+  steps_.last_detailed = candidate_.LastDetailed(std::exp(start_));
+  double least = std::numeric_limits<double>::infinity();
+  const auto improves = [&](const StepChoice& choice) {
+    if (choice.last_detailed < 1 || choice.last_detailed > candidate_.num_levels()) return false;
+    const StepChoice before = std::exchange(steps_, choice);
+    const StatusOr<Attempt> attempt = Try(start_, effort_.suit_passes);
+    if (attempt.ok() && Merit(attempt.value()) < least) {
+      least = Merit(attempt.value());
+      start_ += (Goal() - attempt.value().value) / TypicalSlope();
+      return true;
+    }
+    steps_ = before;
+    return false;
   };
-  double last = start_;
-  for (int i = 0; i < kMeetTries && !CannotReach() && !(best && is_met(*best)); ++i) {
-    if (measurements_ >= kMostMeasurements && best && rank(*best) == 2) break;
-    const bool by_estimate = i < kEstimatedTries;
-    double log_lambda = NextGuess();
-    if (i == kEstimatedTries && !target_.is_rate) {  // estimates will not do: from here on values are measured
-      high_enough = high;
-      if (best && is_met(*best)) break;
-      start_ = last;
-      values_ = measured;
-      kept_steps_.reset();
-      offset_ = 0;
-      log_lambda = NextGuess();
-    }
-    last = log_lambda;
-    StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes);
-    if (!tried.ok() && (best || unmeasured)) break;  // so coarse a lattice cannot carry the base: what there is must do
-    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, std::move(tried));
-    if (!target_.is_rate) {
-      if (by_estimate && !is_met(attempt)) {
-        unmeasured = std::move(attempt);
-        KeepStepsAtJump();
-        continue;
+  const auto climb = [&](const std::function<void(StepChoice*)>& up, const std::function<void(StepChoice*)>& down) {
+    for (const auto& move : {up, down}) {
+      const auto moved = [&] {
+        StepChoice choice = steps_;
+        move(&choice);
+        return choice;
+      };
+      if (!improves(moved())) continue;
+      while (improves(moved())) {
       }
-      attempt.psnr = MeasurePsnr(attempt, kSamples);
-      if (!kept_steps_) measured[log_lambda] = attempt.psnr;
-      if (by_estimate) offset_ = attempt.psnr - attempt.value;
-      if (!by_estimate) attempt.value = values_[log_lambda] = attempt.psnr;
-      unmeasured.reset();
+      return;
     }
-    consider(std::move(attempt));
-    KeepStepsAtJump();
+  };
+  improves(StepChoice(steps_));
+  climb([](StepChoice* c) { ++c->last_detailed; }, [](StepChoice* c) { --c->last_detailed; });
+  climb([](StepChoice* c) { c->base /= kStepChange; }, [](StepChoice* c) { c->base *= kStepChange; });
+  climb([](StepChoice* c) { c->details *= kStepChange; }, [](StepChoice* c) { c->details /= kStepChange; });
+}
+
+StatusOr<MeasuredStream> CandidateSearch::Meet() {
+  if (effort_.suit_passes > 0 && mode_ != EncodeMode::kPaper) SuitSteps();
+  values_.clear();  // those of fewer passes
+  return target_.is_rate ? MeetRate() : MeetQuality();
+}
+
+StatusOr<MeasuredStream> CandidateSearch::MeetRate() {
+  const auto excess = [&](const Attempt& a) { return a.value - std::log(target_.bytes); };
+  std::optional<Attempt> best;
+  for (int i = 0; i < kMeetTries && !(best && excess(*best) <= 0 && excess(*best) >= -kBytesSlack); ++i) {
+    StatusOr<Attempt> tried = Try(NextGuess(), effort_.meet_passes);
+    if (!tried.ok() && best) break;  // so coarse a lattice cannot carry the base: what there is must do
+    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, std::move(tried));
+    const bool keeps = excess(attempt) <= 0, kept = best && excess(*best) <= 0;
+    if (!best || (keeps == kept ? std::fabs(excess(attempt)) < std::fabs(excess(*best)) : keeps)) best = std::move(attempt);
   }
-  if (unmeasured && !(best && is_met(*best))) {  // out of tries: the last one may be the nearest
-    unmeasured->psnr = MeasurePsnr(*unmeasured, kSamples);
-    consider(std::move(*unmeasured));
+  const bool meets_target = excess(*best) <= 0;
+  return MeasuredStream{std::move(best->stream), best->psnr, meets_target, measurements_};
+}
+
+StatusOr<MeasuredStream> CandidateSearch::MeetQuality() {
+  constexpr uint64_t kSamples = 200'000;
+  const auto excess = [&](const Attempt& a) { return a.psnr - target_.psnr; };
+  // Safely over the target, then just so, then under it.
+  const auto rank = [&](const Attempt& a) {
+    return excess(a) >= kPsnrMargin && excess(a) <= kPsnrSlack ? 2 : excess(a) >= 0 ? 1 : 0;
+  };
+  std::optional<Attempt> best;
+  const auto measure = [&](Attempt attempt) {
+    attempt.psnr = MeasurePsnr(attempt, kSamples);
+    const double psnr = attempt.psnr;
+    const auto is_better = [&](const Attempt& a, const Attempt& b) {
+      if (rank(a) != rank(b)) return rank(a) > rank(b);
+      return rank(a) == 2 ? a.stream.size() < b.stream.size() : std::fabs(excess(a)) < std::fabs(excess(b));
+    };
+    if (!best || is_better(attempt, *best)) best = std::move(attempt);
+    return psnr;
+  };
+  const auto is_done = [&] { return best && rank(*best) == 2; };
+
+  std::map<double, double> measured;  // dB by ln(lambda)
+  std::optional<Attempt> unmeasured;
+  for (int i = 0; i < kEstimatedTries && !(is_done() && i >= effort_.least_tries) && measurements_ < kMostMeasurements; ++i) {
+    const double log_lambda = NextGuess();
+    StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes);
+    if (!tried.ok() && (best || unmeasured)) break;
+    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, std::move(tried));
+    if (rank(attempt) < 2) {  // by the estimate
+      unmeasured = std::move(attempt);
+      continue;
+    }
+    const double estimate = EstimatePsnr(attempt.stream);
+    measured[log_lambda] = measure(std::move(attempt));
+    offset_ = measured[log_lambda] - estimate;
+    unmeasured.reset();
   }
-  MeasuredStream result;
-  result.meets_target = keeps_promise(*best);
-  result.psnr = best->psnr;
-  result.measurements = measurements_;
-  result.stream = std::move(best->stream);
-  return result;
+  if (unmeasured && !is_done()) {
+    const double log_lambda = unmeasured->log_lambda;
+    measured[log_lambda] = measure(std::move(*unmeasured));
+  }
+
+  // Where the curve jumps, estimates do not lead to the target; measuring may.
+  values_ = measured;
+  values_are_measured_ = true;
+  offset_ = 0;
+  for (int i = kEstimatedTries; i < kMeetTries && !is_done() && !CannotReach(); ++i) {
+    const double log_lambda = NextGuess();
+    StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes);
+    if (!tried.ok()) break;
+    values_[log_lambda] = measure(std::move(tried).value());
+  }
+  const bool meets_target = excess(*best) >= 0;
+  return MeasuredStream{std::move(best->stream), best->psnr, meets_target, measurements_};
 }
 
 }  // namespace lacerta

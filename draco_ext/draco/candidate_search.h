@@ -59,6 +59,7 @@ class CandidateSearch {
  private:
   struct Attempt {
     CodedStream stream;
+    double log_lambda = 0;
     double psnr = 0;   // dB: estimated, or measured once it was
     double value = 0;  // as in values_
   };
@@ -66,6 +67,12 @@ class CandidateSearch {
   double EstimatePsnr(const CodedStream& stream) const;
   double MeasurePsnr(const Attempt& attempt, uint64_t num_samples);
   double Goal() const;  // the value aimed at
+  // Of the distance that quantization alone may have where all have `psnr`: it follows the slope, while that of the remesh stays.
+  double CodingPsnr(double psnr) const;
+  double Merit(const Attempt& attempt) const;  // what Score returns, as one attempt lets think
+  void SuitSteps();
+  StatusOr<MeasuredStream> MeetRate();
+  StatusOr<MeasuredStream> MeetQuality();
   double TypicalSlope() const;
   // The attempts next to the goal: the coarsest that is not under it and the finest that is under it; values fall as lambda
   // grows, but for noise. Either may be missing.
@@ -76,7 +83,6 @@ class CandidateSearch {
   bool IsBracket(const Bracket& bracket) const;
   double NextGuess() const;
   bool CannotReach() const;
-  void KeepStepsAtJump();
 
   const NormalMeshCandidate& candidate_;
   const double remesh_psnr_;
@@ -85,10 +91,15 @@ class CandidateSearch {
   const EncodeMode mode_;
   const SearchEffort effort_;
   double start_;                     // ln(lambda) to begin with
-  std::map<double, double> values_;  // of the attempts so far, by ln(lambda): ln(bytes) at a rate, else estimated dB
+  std::map<double, double> values_;  // of the attempts so far, by ln(lambda): ln(bytes) at a rate, else CodingPsnr of the estimate
   std::optional<double> offset_;     // dB that a measure showed more than the estimate, which hardly depends on lambda
-  // Where set, the steps stay at this ln(lambda), and what is tried is the slope of the descent alone.
-  std::optional<double> kept_steps_;
+  // How the steps follow from the slope of the coefficients: the slopes that give them, as multiples of it.
+  struct StepChoice {
+    double details = 1, base = 1;
+    int last_detailed = 1;
+  };
+  StepChoice steps_;
+  bool values_are_measured_ = false;  // dB, where estimates do not lead to the target
   int measurements_ = 0;
 };
 

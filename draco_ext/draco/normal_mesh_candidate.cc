@@ -121,11 +121,12 @@ BaseMesh NormalMeshCandidate::BaseLattice(const TriangleMesh& base, double step)
 StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope, EncodeMode mode) const {
   if (mode == EncodeMode::kPaper) return CodeByModel(normal_mesh_.mesh, slope.lambda);
   const std::vector<Vec3f> base(target_.points.begin(), target_.points.begin() + num_base_vertices());
-  const BaseMesh lattice = BaseLattice({base, normal_mesh_.mesh.base_triangles}, BaseStepForSlope(slope.lambda));
+  const BaseMesh lattice = BaseLattice({base, normal_mesh_.mesh.base_triangles}, BaseStepForSlope(slope.base_lambda));
   DescentOptions options;
-  options.lambda = slope.descent_lambda;
+  options.lambda = slope.lambda;
   options.passes = slope.passes;
-  CodedSurface coded = Descend(target_, QuantizeClosedLoop(target_, lattice, StepsForSlope(target_, detail_scales_, slope.lambda)), options);
+  const std::vector<LevelSteps> steps = StepsForSlope(target_, slope.last_detailed, slope.step_lambda);
+  CodedSurface coded = Descend(target_, QuantizeClosedLoop(target_, lattice, steps), options);
   if (target_.keeps_vertices) RepairVertices(target_, &coded);
   return coded;
 }

@@ -10,6 +10,7 @@
 #include "draco/base_mesh_codec.h"
 #include "draco/refinable_surface.h"
 #include "encoder/coefficient_descent.h"
+#include "encoder/step_law.h"
 #include "encoder/surface_target.h"
 #include "lacerta/codec.h"
 
@@ -31,12 +32,12 @@ struct CodedStream {
   TriangleMesh FinestMesh() const { return {decoded.positions, triangles}; }
 };
 
-// Where on the rate-distortion curve to code, in squared model units per bit, > 0. Paper mode knows the first slope alone.
+// Where on the rate-distortion curve to code. Slopes are squared model units per bit, > 0. Paper mode knows the first one alone.
 struct CodingSlope {
-  double lambda = 0;  // of the steps
-  // Of the choice of coefficients. Where a level falls silent the steps jump, and bytes and quality with them; a larger slope here
-  // reaches what lies between.
-  double descent_lambda = 0;
+  double lambda = 0;       // of the choice of coefficients
+  double step_lambda = 0;  // of the steps
+  double base_lambda = 0;  // of the base lattice
+  int last_detailed = 1;   // level, 1 .. L, for StepsForSlope
   int passes = DescentOptions().passes;
 };
 
@@ -52,9 +53,15 @@ class NormalMeshCandidate {
   NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);
 
   // Codes at a slope of the rate-distortion curve: lambda in squared model units per bit, > 0. A larger one gives fewer bytes.
-  StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const { return Code({lambda, lambda}, mode); }
+  StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const {
+    return Code({lambda, lambda, lambda, LastDetailed(lambda), DescentOptions().passes}, mode);
+  }
   StatusOr<CodedStream> Code(const CodingSlope& slope, EncodeMode mode) const;
 
+  // LastDetailedLevel of this surface.
+  int LastDetailed(double lambda) const { return LastDetailedLevel(target_, detail_scales_, lambda); }
+
+  int num_levels() const { return target_.num_levels(); }
   uint32_t num_base_vertices() const { return normal_mesh_.mesh.num_base_vertices; }
   const NormalMesh& normal_mesh() const { return normal_mesh_; }
   // The remesh as a plain mesh, before anything is quantized.

@@ -109,7 +109,7 @@ class Ladder {
 
   // Whether rung a scores so much worse than b that it hardly is a fluke: neighbouring rungs are rarely further from the smooth curve
   // of all rungs.
-  bool IsMuchWorse(const Rung& a, const Rung& b) const { return a.score >= b.score + (target_.is_rate ? 0.3 : 0.03); }
+  bool IsMuchWorse(const Rung& a, const Rung& b) const { return a.score >= b.score + effort_.much_worse * (target_.is_rate ? 10 : 1); }
 
   static void LetGo(Rung* rung) {
     rung->search.reset();

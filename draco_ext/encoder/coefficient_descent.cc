@@ -201,12 +201,17 @@ std::vector<Vec3f> Synthesize(const SurfaceTarget& target, const CodedSurface& c
 }
 
 double PlaneDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& positions) {
-  double sum = 0;
-  for (size_t v = 0; v < positions.size(); ++v) {
-    const double distance = Dot(positions[v] - target.points[v], target.normals[v]);
-    sum += target.masses.back()[v] * distance * distance;
+  std::vector<double> distance(positions.size());
+  for (size_t v = 0; v < positions.size(); ++v) distance[v] = Dot(positions[v] - target.points[v], target.normals[v]);
+  double sum = 0, area = 0;
+  for (const Triangle& t : target.topologies.back().triangles) {
+    const Vec3f& corner = target.points[t[0]];
+    const double doubled_area = Norm(Cross(target.points[t[1]] - corner, target.points[t[2]] - corner));
+    const double a = distance[t[0]], b = distance[t[1]], c = distance[t[2]];
+    sum += doubled_area * (a * a + b * b + c * c + a * b + b * c + c * a) / 6;
+    area += doubled_area;
   }
-  return sum;
+  return area > 0 ? sum / area : 0;
 }
 
 CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& base, const std::vector<LevelSteps>& steps) {

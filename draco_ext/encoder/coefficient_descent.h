@@ -39,7 +39,9 @@ CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& bas
 // Improves `coded`, whose steps stay as they are.
 CodedSurface Descend(const SurfaceTarget& target, CodedSurface coded, const DescentOptions& options);
 
-// Mean squared distance of the decoded vertices to their planes, weighted by area: model units squared.
+// Mean squared distance of a surface to the planes of the target, over the area of the finest level, squared model units: distances vary
+// linearly over a triangle. With the squared distance of the unquantized remesh added it foretells the measured one within some hundredths
+// of a dB; masses lumped at the vertices overstate it by up to 1.7 dB, since errors of neighbors partly cancel. positions: #V of the finest level.
 double PlaneDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& positions);
 
 }  // namespace lacerta

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSlopeShare = 0.12;       // lambda / (step^2 / N) where detail ends
 constexpr double kStepRatio = 1.2;         // between the steps of two levels below that, rounded as the header expects it (NextStepBits)
-constexpr double kActiveScale = 0.5;       // a level carries detail when its scale exceeds this share of its step
+constexpr double kDetailedScale = 0.5;     // a level carries detail when its scale exceeds this share of its step
 constexpr double kTangentialRatio = 2.0;   // of the tangential to the normal step
 constexpr double kBaseVertices = 2.5e4;    // the base lattice is as fine as the steps of a level of so many vertices
 
@@ -55,23 +55,32 @@ double EstimateDetailBits(const SurfaceTarget& target, const std::vector<LevelSt
   return bits;
 }
 
-std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, const std::vector<double>& detail_scales, double lambda) {
-  const int num_levels = target.num_levels();
-  std::vector<double> steps(num_levels);
-  int active = 0;
-  for (int i = 0; i < num_levels; ++i) {
-    steps[i] = BalancedStep(lambda, target.topologies[i + 1].num_vertices);
-    if (detail_scales[i] > kActiveScale * steps[i]) active = i;
+int LastDetailedLevel(const SurfaceTarget& target, const std::vector<double>& detail_scales, double lambda) {
+  int last = 1;
+  for (int level = 2; level <= target.num_levels(); ++level) {
+    if (detail_scales[level - 1] > kDetailedScale * BalancedStep(lambda, target.topologies[level].num_vertices)) last = level;
   }
-  for (int i = active - 1; i >= 0; --i) steps[i] = steps[i + 1] / kStepRatio;
+  return last;
+}
+
+std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, int last_detailed, double lambda) {
+  const int num_levels = target.num_levels();
   std::vector<LevelSteps> result(num_levels);
-  for (int i = 0; i < num_levels; ++i) {
-    const bool is_expected = i > 0 && i <= active && result[i - 1].normal_step > 0;
-    result[i].normal_step = is_expected ? StepFromBits(static_cast<uint16_t>(NextStepBits(StepToBits(result[i - 1].normal_step))))
-                                        : RoundStep(static_cast<float>(steps[i]));
-    result[i].tangential_step = RoundStep(static_cast<float>(kTangentialRatio) * result[i].normal_step);
+  for (int level = 1; level <= num_levels; ++level) {
+    float& step = result[level - 1].normal_step;
+    if (level > 1 && level <= last_detailed && result[level - 2].normal_step > 0) {
+      step = StepFromBits(static_cast<uint16_t>(NextStepBits(StepToBits(result[level - 2].normal_step))));
+    } else {
+      const double balanced = BalancedStep(lambda, target.topologies[std::max(level, last_detailed)].num_vertices);
+      step = RoundStep(static_cast<float>(balanced / std::pow(kStepRatio, std::max(0, last_detailed - level))));
+    }
+    result[level - 1].tangential_step = RoundStep(static_cast<float>(kTangentialRatio) * step);
   }
   return result;
+}
+
+std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, const std::vector<double>& detail_scales, double lambda) {
+  return StepsForSlope(target, LastDetailedLevel(target, detail_scales, lambda), lambda);
 }
 
 double BaseStepForSlope(double lambda) { return BalancedStep(lambda, kBaseVertices); }

@@ -18,7 +18,13 @@ namespace lacerta {
 // kept; model units.
 std::vector<double> DetailScales(const SurfaceTarget& target);
 
-// Steps of all levels. detail_scales: of DetailScales; lambda: squared model units per bit, > 0.
+// The finest level, 1 .. L, whose details are large beside the step that it would have if it were the last one to be coded.
+int LastDetailedLevel(const SurfaceTarget& target, const std::vector<double>& detail_scales, double lambda);
+
+// Steps of all levels, of which last_detailed, 1 .. L, is the finest that carries detail. lambda: squared model units per bit, > 0. They
+// grow by a factor of 1.7 where last_detailed grows by one: which one is better for a surface, trying tells.
+std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, int last_detailed, double lambda);
+// The same with LastDetailedLevel. detail_scales: of DetailScales.
 std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, const std::vector<double>& detail_scales, double lambda);
 
 // About the bits of the normal details at these steps, up to a factor: what Gaussian variables of their size would take. It tells normal
