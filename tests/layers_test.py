@@ -22,7 +22,7 @@ LIBRARIES = {
 # mesh and the limits.
 INSTALLED = {
     "status.h": "common", "vec3.h": "common", "mesh.h": "common", "decoder.h": "common",
-    "surface_distance.h": "geometry",
+    "surface_distance.h": "geometry", "attributed_mesh.h": "geometry", "attribute_distance.h": "geometry",
     "clean.h": "remesh", "remesh.h": "remesh",
     "codec.h": "draco", "draco.h": "draco",
     "file_io.h": "gltf", "mesh_file.h": "gltf", "gltf.h": "gltf", "parsed_gltf.h": "gltf", "tinygltf.h": "gltf",

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/surface_sampler.h"
 #include "geometry/triangle_tree.h"
 
 namespace lacerta {
@@ -17,13 +18,7 @@ namespace lacerta {
 // A mesh ready to be sampled and to be measured against.
 struct SurfaceDistanceMeter::Surface {
   Surface(const TriangleMesh& mesh, bool with_vertices) : tree(mesh) {
-    cumulated_area.reserve(tree.corners_in_tree_order().size());
-    double area = 0.0;
-    for (const TriangleTree::Corners& corners : tree.corners_in_tree_order()) {
-      const Vec3d a = Vec3Cast<double>(corners[0]);
-      area += Norm(Cross(Vec3Cast<double>(corners[1]) - a, Vec3Cast<double>(corners[2]) - a));
-      cumulated_area.push_back(area);
-    }
+    cumulated_area = CumulatedAreas(tree.corners_in_tree_order());
     if (!with_vertices) return;
     std::vector<bool> seen(mesh.positions.size());
     for (const uint32_t f : tree.faces_in_tree_order()) {
@@ -48,53 +43,6 @@ constexpr uint64_t kBlockSize = 2048;
 
 // Squares of distances 100 dB below this are still in the range of float, in which the tree returns them.
 constexpr double kMinDiagonal = 1e-12;
-
-double Fraction(double x) { return x - std::floor(x); }
-
-// Walks through the samples of a surface in order. One sample falls into each of num_samples equal parts of the area;
-// its place in that part follows the golden ratio, so that no pattern of the triangles can keep step with the samples.
-// Within its triangle it follows the R2 sequence [Roberts 2018], whose points stay well spread both over one large
-// triangle that takes many samples in a row and over many small ones that take one sample each. The seed shifts all
-// three.
-class Sampler {
- public:
-  Sampler(const std::vector<TriangleTree::Corners>& corners, const std::vector<double>& cumulated_area,
-          const SurfaceDistanceOptions& options)
-      : corners_(corners), cumulated_area_(cumulated_area), options_(options) {}
-
-  Vec3f Sample(uint64_t i) {
-    constexpr double kStepPart = 0.6180339887498949;                            // 1 / (root of x^2 = x + 1)
-    constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;  // powers of 1 / (root of x^3 = x + 1)
-    constexpr double kSeedPart = 0.4142135623730950, kSeedU = 0.7320508075688772, kSeedV = 0.2360679774997897;
-    const double n = static_cast<double>(i), seed = static_cast<double>(options_.seed);
-    const double part = (n + Fraction(n * kStepPart + seed * kSeedPart)) / static_cast<double>(options_.num_samples);
-    const double target = std::min(part, 1.0) * cumulated_area_.back();
-    while (slot_ + 1 < cumulated_area_.size() && !(target < cumulated_area_[slot_])) Advance(target);
-    double u = Fraction(n * kStepU + seed * kSeedU + 0.5), v = Fraction(n * kStepV + seed * kSeedV + 0.5);
-    if (u + v > 1.0) {
-      u = 1.0 - u;
-      v = 1.0 - v;
-    }
-    const Vec3d a = Vec3Cast<double>(corners_[slot_][0]);
-    const Vec3d b = Vec3Cast<double>(corners_[slot_][1]), c = Vec3Cast<double>(corners_[slot_][2]);
-    return Vec3Cast<float>(a + (b - a) * u + (c - a) * v);
-  }
-
- private:
-  // Moves on to the triangle that holds `target`: the next one mostly, else by bisection.
-  void Advance(double target) {
-    ++slot_;
-    if (target < cumulated_area_[slot_]) return;
-    const auto from = cumulated_area_.begin() + static_cast<std::ptrdiff_t>(slot_);
-    slot_ = static_cast<size_t>(std::upper_bound(from, cumulated_area_.end(), target) - cumulated_area_.begin());
-    slot_ = std::min(slot_, cumulated_area_.size() - 1);
-  }
-
-  const std::vector<TriangleTree::Corners>& corners_;
-  const std::vector<double>& cumulated_area_;
-  const SurfaceDistanceOptions& options_;
-  size_t slot_ = 0;
-};
 
 struct BlockSum {
   double sum2 = 0.0, max2 = 0.0;
@@ -205,9 +153,8 @@ StatusOr<SurfaceDistance> SurfaceDistanceMeter::Measure(const TriangleMesh& mesh
   }
   const auto measure = [&options](const Surface& from, const Surface& to) {
     const BlockSum samples = SumOverBlocks(options.num_samples, to.tree, [&] {
-      return [sampler = Sampler(from.tree.corners_in_tree_order(), from.cumulated_area, options)](uint64_t i) mutable {
-        return sampler.Sample(i);
-      };
+      return [sampler = SurfaceSampler(from.tree.corners_in_tree_order(), from.cumulated_area, options.num_samples,
+                                       options.seed)](uint64_t i) mutable { return sampler.Sample(i).position; };
     });
     const BlockSum vertices = SumOverBlocks(options.max_at_vertices ? from.vertices.size() : 0, to.tree,
                                             [&from] { return [&from](uint64_t i) { return from.vertices[i]; }; });

@@ -439,6 +439,44 @@ ClosestPointResult TriangleTree::ClosestPointNear(const Vec3f& p, uint32_t hint)
   return Finish(search);
 }
 
+void TriangleTree::PointsNear(const Vec3f& p, float max_squared_distance, size_t max_points,
+                              std::vector<ClosestPointResult>* points) const {
+  if (nodes_.empty() || !IsUsable(p) || !(max_squared_distance >= 0.0f)) return;
+  Search search;
+  search.p = p;
+  search.pd = Vec3Cast<double>(p);
+  search.SetBound(max_squared_distance);
+  const size_t most = points->size() + max_points;
+  uint32_t stack[kStackSize];
+  int size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const Node& node = nodes_[stack[--size]];
+    for (int k = 0; k < kWidth; ++k) {
+      float d2 = 0.0f;
+      for (int axis = 0; axis < 3; ++axis) {
+        const float beyond = std::max(std::fabs(node.center[axis][k] - p[axis]) - node.half_size[axis][k], 0.0f);
+        d2 += beyond * beyond;
+      }
+      if (!(d2 < search.box_bound2)) continue;
+      if (node.count[k] == 0) {
+        stack[size++] = node.child[k];
+        continue;
+      }
+      for (uint32_t slot = node.child[k]; slot < node.child[k] + node.count[k]; ++slot) {
+        if (points->size() == most) return;
+        const Corners& t = corners_[slot];
+        if (ClosestOnTriangle(search.pd, Vec3Cast<double>(t[0]), Vec3Cast<double>(t[1]), Vec3Cast<double>(t[2]), search.bound2,
+                              &search.best) &&
+            search.best.squared_distance <= search.bound2) {
+          search.slot = slot;
+          points->push_back(Finish(search));
+        }
+      }
+    }
+  }
+}
+
 namespace {
 
 // A line prepared as in [Woop et al. 2013]: axes permuted so that z is where the direction is longest, then sheared so

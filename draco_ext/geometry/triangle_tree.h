@@ -55,6 +55,10 @@ class TriangleTree {
   // distance bounds the search from the start. It may be any number: what is no face of the tree is no hint.
   ClosestPointResult ClosestPointNear(const Vec3f& p, uint32_t hint) const;
 
+  // Appends to *points, in no particular order, for each face not farther from p than max_squared_distance its point closest to p,
+  // but for no more than `max_points` faces: any of them where there are more.
+  void PointsNear(const Vec3f& p, float max_squared_distance, size_t max_points, std::vector<ClosestPointResult>* points) const;
+
   // Appends to *hits, in no particular order, where the line origin + t * direction meets the mesh with t_min <= t <=
   // t_max, whichever way the faces look. Watertight [Woop et al. 2013]: a line through a shared edge or vertex hits at
   // least one, and possibly all, of the faces there. Faces parallel to the line are not hit. direction: not zero, of

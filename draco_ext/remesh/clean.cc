@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
-#include <tuple>
 
 #include "common/subdivision.h"
+#include "geometry/equal_rows.h"
 
 namespace lacerta {
 namespace {
@@ -31,17 +30,10 @@ Status CheckInput(const TriangleMesh& mesh) {
 
 // For each vertex the first one at the same position.
 std::vector<uint32_t> FirstAtPosition(const std::vector<Vec3f>& positions) {
-  std::vector<uint32_t> order(positions.size()), first(positions.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto key = [&](uint32_t v) { return std::tie(positions[v].x, positions[v].y, positions[v].z); };
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    const auto ka = key(a), kb = key(b);
-    return ka < kb || (ka == kb && a < b);
-  });
-  for (size_t i = 0; i < order.size(); ++i) {
-    first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
-  }
-  return first;
+  std::vector<float> table;
+  table.reserve(3 * positions.size());
+  for (const Vec3f& p : positions) table.insert(table.end(), {p.x, p.y, p.z});
+  return FirstEqualRow(Span<const float>(table), 3);
 }
 
 // True for triangles that repeat an earlier one, whichever corner they start at.

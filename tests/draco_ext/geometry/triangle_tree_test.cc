@@ -100,6 +100,36 @@ TEST(TriangleTree, ClosestPointAgreesWithBruteForceOnAllShapes) {
   }
 }
 
+TEST(TriangleTree, PointsNearAreThoseOfAllFacesInReach) {
+  std::mt19937 random(11);
+  for (const shapes::NamedShape& shape : shapes::AllShapes()) {
+    SCOPED_TRACE(shape.name);
+    const TriangleTree tree(shape.mesh);
+    for (int k = 0; k < 10; ++k) {
+      const Vec3f p = PointOnFace(shape.mesh, random() % shape.mesh.triangles.size(), {0.25f, 0.5f, 0.25f}) + RandomPoint(&random, 0.02f);
+      constexpr float kReach2 = 0.05f * 0.05f;
+      std::vector<ClosestPointResult> points;
+      tree.PointsNear(p, kReach2, shape.mesh.triangles.size(), &points);
+      std::vector<float> distance2(shape.mesh.triangles.size(), 2 * kReach2);
+      for (const ClosestPointResult& result : points) {
+        ExpectConsistent(shape.mesh, p, result);
+        EXPECT_EQ(distance2[result.point.face], 2 * kReach2) << "twice";
+        distance2[result.point.face] = result.squared_distance;
+      }
+      for (uint32_t f = 0; f < shape.mesh.triangles.size(); ++f) {
+        const TriangleMesh one{shape.mesh.positions, {shape.mesh.triangles[f]}};
+        const float expected = TriangleTree(one).ClosestPoint(p).squared_distance;
+        EXPECT_EQ(distance2[f], expected <= kReach2 ? expected : 2 * kReach2);
+      }
+      if (points.size() < 2) continue;
+      const size_t all = points.size();
+      points.clear();
+      tree.PointsNear(p, kReach2, all - 1, &points);
+      EXPECT_EQ(points.size(), all - 1);
+    }
+  }
+}
+
 TEST(TriangleTree, FacesInOrderOfSubdivisionStayTogether) {
   TriangleMesh ordered = shapes::BumpySphere(2);
   Topology topology = BuildTopology(static_cast<uint32_t>(ordered.positions.size()), ordered.triangles).value();

@@ -1,0 +1,183 @@
+#include "lacerta/attribute_distance.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "geometry/group_surface.h"
+#include "geometry/surface_sampler.h"
+#include "lacerta/surface_distance.h"
+
+namespace lacerta {
+
+struct AttributeDistanceMeter::Original {
+  explicit Original(AttributedMesh original) : mesh(std::move(original)), surface(mesh), diagonal(BoundingBoxDiagonal(mesh.surface)) {}
+
+  const AttributedMesh mesh;
+  const GroupSurface surface;
+  const double diagonal;
+};
+
+namespace {
+
+constexpr uint64_t kBlockSize = 2048;
+constexpr double kBestShare = 0.99;
+constexpr float kAbsent = -1;  // in place of an error: no attribute there
+
+double DegreesBetween(const Vec3d& a, const Vec3d& b) {
+  constexpr double kDegreesPerRadian = 57.29577951308232;
+  const double norm_a = Norm(a), norm_b = Norm(b);
+  if (norm_a == 0 && norm_b == 0) return 0;
+  if (norm_a == 0 || norm_b == 0) return 90;  // a vector without direction is as far from all
+  return kDegreesPerRadian * std::atan2(Norm(Cross(a, b)), Dot(a, b));
+}
+
+// In the units of AttributeError.
+double ErrorBetween(const MeshAttribute& attribute, double texture_size, const double* a, const double* b) {
+  const bool is_direction = attribute.kind == AttributeKind::kNormal || attribute.kind == AttributeKind::kTangent;
+  if (is_direction && attribute.components >= 3) {
+    if (attribute.components > 3 && (a[3] < 0) != (b[3] < 0)) return 180;
+    return DegreesBetween({a[0], a[1], a[2]}, {b[0], b[1], b[2]});
+  }
+  double sum = 0;
+  for (uint32_t i = 0; i < attribute.components; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum) * (attribute.kind == AttributeKind::kTextureCoordinates ? texture_size : 1.0);
+}
+
+// Errors at the samples of `from`: of attribute a at a * num_samples.
+std::vector<float> ErrorsAtSamples(const GroupSurface& from, const GroupSurface& to, double diagonal,
+                                   const AttributeDistanceOptions& options) {
+  const std::vector<MeshAttribute>&from_attributes = from.mesh().attributes, &to_attributes = to.mesh().attributes;
+  std::vector<float> errors(from_attributes.size() * options.num_samples, kAbsent);
+  uint32_t most_components = 0;
+  for (const MeshAttribute& attribute : from_attributes) most_components = std::max(most_components, attribute.components);
+  const auto measure_block = [&](uint64_t block) {
+    SurfaceSampler sampler(from.corners(), from.cumulated_area(), options.num_samples, options.seed);
+    std::vector<double> value(most_components), other(most_components);
+    std::vector<GroupSurface::Point> near, sides;
+    uint32_t hint = SurfacePoint::kNone;
+    const uint64_t last = std::min((block + 1) * kBlockSize, options.num_samples);
+    for (uint64_t i = block * kBlockSize; i < last; ++i) {
+      const SurfaceSampler::Point sample = sampler.Sample(i);
+      const uint32_t face = from.face_of_slot(sample.slot);
+      const GroupSurface::Point here{face, {static_cast<float>(1 - sample.u - sample.v), static_cast<float>(sample.u), static_cast<float>(sample.v)}, 0};
+      to.PointsNear(from.mesh().GroupOf(face), sample.position, from.NormalOf(face), options.seam_distance * diagonal, &hint, &near);
+      for (size_t a = 0; a < from_attributes.size(); ++a) {
+        if (from_attributes[a].corners[face][0] == MeshAttribute::kNoValue || near.empty()) continue;
+        if (to_attributes[a].corners[near[0].face][0] == MeshAttribute::kNoValue) continue;
+        InterpolateValue(from_attributes[a], here, value.data());
+        sides = near;
+        to.KeepOnePerSide(to_attributes[a], &sides);
+        double least = std::numeric_limits<double>::infinity();
+        for (const GroupSurface::Point& side : sides) {
+          InterpolateValue(to_attributes[a], side, other.data());
+          least = std::min(least, ErrorBetween(from_attributes[a], options.texture_size, value.data(), other.data()));
+        }
+        errors[a * options.num_samples + i] = static_cast<float>(least);
+      }
+    }
+  };
+  tbb::parallel_for(tbb::blocked_range<uint64_t>(0, (options.num_samples + kBlockSize - 1) / kBlockSize, 1),
+                    [&](const tbb::blocked_range<uint64_t>& range) {
+                      for (uint64_t block = range.begin(); block != range.end(); ++block) measure_block(block);
+                    });
+  return errors;
+}
+
+AttributeError Summarize(std::vector<float> errors) {
+  const size_t num_samples = errors.size();
+  errors.erase(std::remove(errors.begin(), errors.end(), kAbsent), errors.end());
+  AttributeError result;
+  if (errors.empty()) return result;
+  std::sort(errors.begin(), errors.end());
+  const auto num_best = static_cast<size_t>(std::ceil(kBestShare * static_cast<double>(errors.size())));
+  double sum = 0;
+  for (size_t i = 0; i < errors.size(); ++i) {
+    sum += static_cast<double>(errors[i]) * static_cast<double>(errors[i]);
+    if (i + 1 == num_best) result.rms_99 = std::sqrt(sum / static_cast<double>(num_best));
+  }
+  result.rms = std::sqrt(sum / static_cast<double>(errors.size()));
+  result.max = static_cast<double>(errors.back());
+  result.share = static_cast<double>(errors.size()) / static_cast<double>(num_samples);
+  return result;
+}
+
+std::vector<AttributeError> MeasureOneSide(const GroupSurface& from, const GroupSurface& to, double diagonal,
+                                           const AttributeDistanceOptions& options) {
+  const std::vector<float> errors = ErrorsAtSamples(from, to, diagonal, options);
+  std::vector<AttributeError> result;
+  for (size_t a = 0; a < from.mesh().attributes.size(); ++a) {
+    const auto begin = errors.begin() + static_cast<std::ptrdiff_t>(a * options.num_samples);
+    result.push_back(Summarize({begin, begin + static_cast<std::ptrdiff_t>(options.num_samples)}));
+  }
+  return result;
+}
+
+Status CheckArea(const AttributedMesh& mesh, const GroupSurface& surface) {
+  for (const Vec3f& p : mesh.surface.positions) {
+    for (int k = 0; k < 3; ++k) {
+      if (std::fabs(p[k]) > TriangleTree::kMaxCoordinate) return InvalidData("a coordinate is beyond 1e18; rescale the mesh");
+    }
+  }
+  if (surface.cumulated_area().empty() || !(surface.cumulated_area().back() > 0.0)) {
+    return InvalidData("all triangles are degenerate, there is no area to sample");
+  }
+  return Status();
+}
+
+Status CheckMatch(const GroupSurface& original, const GroupSurface& other) {
+  const std::vector<MeshAttribute>&a = original.mesh().attributes, &b = other.mesh().attributes;
+  if (a.size() != b.size()) return InvalidArgument("the surfaces do not have the same number of attributes");
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (a[i].name == b[i].name && a[i].kind == b[i].kind && a[i].components == b[i].components) continue;
+    return InvalidArgument("attribute " + std::to_string(i) + " is " + a[i].name + " of the original but " + b[i].name + " of the other surface");
+  }
+  std::set<uint32_t> groups;
+  for (const GroupSurface* surface : {&original, &other}) {
+    for (size_t f = 0; f < surface->mesh().surface.triangles.size(); ++f) groups.insert(surface->mesh().GroupOf(f));
+  }
+  for (const uint32_t group : groups) {
+    if (original.HasArea(group) == other.HasArea(group)) continue;
+    return InvalidData("group " + std::to_string(group) + " has area on only one of the surfaces");
+  }
+  return Status();
+}
+
+}  // namespace
+
+AttributeError AttributeDistance::Worst(size_t attribute) const {
+  const AttributeError &a = forward[attribute], &b = backward[attribute];
+  return {std::max(a.rms_99, b.rms_99), std::max(a.rms, b.rms), std::max(a.max, b.max), std::min(a.share, b.share)};
+}
+
+AttributeDistanceMeter::AttributeDistanceMeter(std::unique_ptr<const Original> original) : original_(std::move(original)) {}
+AttributeDistanceMeter::AttributeDistanceMeter(AttributeDistanceMeter&&) noexcept = default;
+AttributeDistanceMeter& AttributeDistanceMeter::operator=(AttributeDistanceMeter&&) noexcept = default;
+AttributeDistanceMeter::~AttributeDistanceMeter() = default;
+
+StatusOr<AttributeDistanceMeter> AttributeDistanceMeter::Create(AttributedMesh original) {
+  LACERTA_RETURN_IF_ERROR(CheckAttributedMesh(original).WithContext("original"));
+  auto prepared = std::make_unique<const Original>(std::move(original));
+  LACERTA_RETURN_IF_ERROR(CheckArea(prepared->mesh, prepared->surface).WithContext("original"));
+  return AttributeDistanceMeter(std::move(prepared));
+}
+
+StatusOr<AttributeDistance> AttributeDistanceMeter::Measure(const AttributedMesh& mesh, const AttributeDistanceOptions& options) const {
+  constexpr uint64_t kMaxSamples = 1'000'000'000;
+  if (options.num_samples < 1 || options.num_samples > kMaxSamples) return InvalidArgument("num_samples must be from 1 to 1e9");
+  if (!(options.texture_size > 0) || !(options.seam_distance >= 0)) return InvalidArgument("texture_size must be above 0, seam_distance not below");
+  LACERTA_RETURN_IF_ERROR(CheckAttributedMesh(mesh).WithContext("measured mesh"));
+  const GroupSurface other(mesh);
+  LACERTA_RETURN_IF_ERROR(CheckArea(mesh, other).WithContext("measured mesh"));
+  LACERTA_RETURN_IF_ERROR(CheckMatch(original_->surface, other));
+  return AttributeDistance{MeasureOneSide(original_->surface, other, original_->diagonal, options),
+                           MeasureOneSide(other, original_->surface, original_->diagonal, options)};
+}
+
+}  // namespace lacerta
