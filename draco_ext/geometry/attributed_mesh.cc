@@ -13,28 +13,28 @@ constexpr uint32_t kNone = MeshAttribute::kNoValue;
 constexpr size_t kMaxVertices = kNone - 1;
 constexpr size_t kMaxGroups = 1 << 24;
 
-// Welded rows of a table, as far as `uses` names them: indices of rows become indices of `rows`.
-struct WeldedRows {
-  std::vector<float> rows;
-  std::vector<uint32_t> number;  // of each row of the table; kNone where nothing uses it
-};
-
-WeldedRows Weld(const std::vector<float>& table, size_t columns, const std::vector<bool>& is_used) {
-  const std::vector<uint32_t> first = FirstEqualRow(Span<const float>(table), columns);
-  WeldedRows result;
-  result.number.assign(first.size(), kNone);
-  std::vector<uint32_t> number_of_first(first.size(), kNone);
-  for (size_t row = 0; row < first.size(); ++row) {
-    if (!is_used[row]) continue;
-    uint32_t& number = number_of_first[first[row]];
-    if (number == kNone) {
-      number = static_cast<uint32_t>(result.rows.size() / columns);
-      const auto begin = table.begin() + static_cast<std::ptrdiff_t>(row * columns);
-      result.rows.insert(result.rows.end(), begin, begin + static_cast<std::ptrdiff_t>(columns));
+// Welds the equal rows of a table, drops those that no corner names, and names the others anew.
+void WeldRows(size_t columns, std::vector<float>* table, std::vector<Triangle>* corners) {
+  const std::vector<uint32_t> first = FirstEqualRow(Span<const float>(*table), columns);
+  std::vector<uint32_t> number(first.size(), kNone);
+  for (const Triangle& t : *corners) {
+    for (const uint32_t row : t) {
+      if (row != kNone) number[first[row]] = 0;
     }
-    result.number[row] = number;
   }
-  return result;
+  size_t count = 0;
+  for (size_t row = 0; row < first.size(); ++row) {
+    if (number[row] == kNone) continue;
+    std::copy_n(table->begin() + static_cast<std::ptrdiff_t>(row * columns), columns,
+                table->begin() + static_cast<std::ptrdiff_t>(count * columns));
+    number[row] = static_cast<uint32_t>(count++);
+  }
+  table->resize(count * columns);
+  for (Triangle& t : *corners) {
+    for (uint32_t& row : t) {
+      if (row != kNone) row = number[first[row]];
+    }
+  }
 }
 
 bool AreAllFinite(const std::vector<float>& values, size_t* at) {
@@ -57,6 +57,8 @@ Status CheckSoup(const VertexSoup& soup) {
     }
   }
   for (const VertexSoup::Attribute& attribute : soup.attributes) {
+    const auto is_namesake = [&](const VertexSoup::Attribute& other) { return other.name == attribute.name; };
+    if (std::count_if(soup.attributes.begin(), soup.attributes.end(), is_namesake) > 1) return InvalidData(attribute.name + " is there twice");
     if (attribute.components == 0 || attribute.values.size() != soup.positions.size() * attribute.components) {
       return InvalidData(attribute.name + ": has " + std::to_string(attribute.values.size()) + " numbers for " +
                          std::to_string(soup.positions.size()) + " vertices of " + std::to_string(attribute.components) + " components");
@@ -68,84 +70,57 @@ Status CheckSoup(const VertexSoup& soup) {
   return Status();
 }
 
-// The soups one behind the other.
-struct Joined {
-  std::vector<float> positions;      // 3 per vertex
-  std::vector<Triangle> triangles;
-  std::vector<bool> is_used;         // per vertex
-  std::vector<size_t> first_vertex;  // of each soup, and the end
-  std::vector<uint32_t> groups;
-};
-
-StatusOr<Joined> Join(const std::vector<VertexSoup>& soups) {
-  Joined joined;
-  size_t num_vertices = 0;
-  for (size_t s = 0; s < soups.size(); ++s) {
-    const VertexSoup& soup = soups[s];
-    LACERTA_RETURN_IF_ERROR(CheckSoup(soup).WithContext("group " + std::to_string(s)));
-    joined.first_vertex.push_back(num_vertices);
-    const auto first = static_cast<uint32_t>(num_vertices);
-    num_vertices += soup.positions.size();
-    if (num_vertices > kMaxVertices) return Unsupported("more than 4,294,967,294 vertices: cut the mesh into parts");
-    for (const Vec3f& p : soup.positions) joined.positions.insert(joined.positions.end(), {p.x, p.y, p.z});
-    joined.is_used.resize(num_vertices, false);
-    for (const Triangle& t : soup.triangles) {
-      joined.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-      joined.groups.push_back(static_cast<uint32_t>(s));
-      for (const uint32_t v : joined.triangles.back()) joined.is_used[v] = true;
-    }
-  }
-  joined.first_vertex.push_back(num_vertices);
-  return joined;
-}
-
 bool IsSame(const VertexSoup::Attribute& a, const MeshAttribute& b) {
   return a.name == b.name && a.kind == b.kind && a.components == b.components;
 }
 
-// Values and corners of an attribute that some of the soups have.
-void Gather(const std::vector<VertexSoup>& soups, const Joined& joined, MeshAttribute* attribute) {
-  std::vector<float> table;
-  std::vector<bool> is_used;
-  std::vector<uint32_t> row(joined.is_used.size(), kNone);  // of each vertex
-  for (size_t s = 0; s < soups.size(); ++s) {
-    const auto found = std::find_if(soups[s].attributes.begin(), soups[s].attributes.end(),
-                                    [&](const VertexSoup::Attribute& a) { return IsSame(a, *attribute); });
-    if (found == soups[s].attributes.end()) continue;
-    table.insert(table.end(), found->values.begin(), found->values.end());
-    for (size_t v = joined.first_vertex[s]; v < joined.first_vertex[s + 1]; ++v) {
-      row[v] = static_cast<uint32_t>(is_used.size());
-      is_used.push_back(joined.is_used[v]);
-    }
+// The attribute of that kind in `soup`, added to *mesh where it is new.
+MeshAttribute& AttributeLike(const VertexSoup::Attribute& attribute, AttributedMesh* mesh) {
+  for (MeshAttribute& known : mesh->attributes) {
+    if (IsSame(attribute, known)) return known;
   }
-  WeldedRows welded = Weld(table, attribute->components, is_used);
-  attribute->values = std::move(welded.rows);
-  const auto value_of = [&](uint32_t v) { return row[v] == kNone ? kNone : welded.number[row[v]]; };
-  attribute->corners.reserve(joined.triangles.size());
-  for (const Triangle& t : joined.triangles) attribute->corners.push_back({value_of(t[0]), value_of(t[1]), value_of(t[2])});
+  mesh->attributes.push_back({attribute.name, attribute.kind, attribute.components, {}, {}});
+  return mesh->attributes.back();
 }
 
 }  // namespace
 
 StatusOr<AttributedMesh> WeldSoups(const std::vector<VertexSoup>& soups) {
-  LACERTA_ASSIGN_OR_RETURN(const Joined joined, Join(soups));
   AttributedMesh mesh;
-  mesh.groups = joined.groups;
-  const WeldedRows welded = Weld(joined.positions, 3, joined.is_used);
-  for (size_t i = 0; i < welded.rows.size(); i += 3) {
-    mesh.surface.positions.push_back({welded.rows[i], welded.rows[i + 1], welded.rows[i + 2]});
-  }
-  mesh.surface.triangles = joined.triangles;
-  for (Triangle& t : mesh.surface.triangles) t = {welded.number[t[0]], welded.number[t[1]], welded.number[t[2]]};
-  for (const VertexSoup& soup : soups) {
-    for (const VertexSoup::Attribute& a : soup.attributes) {
-      const auto is_known = [&](const MeshAttribute& b) { return IsSame(a, b); };
-      if (std::any_of(mesh.attributes.begin(), mesh.attributes.end(), is_known)) continue;
-      mesh.attributes.push_back({a.name, a.kind, a.components, {}, {}});
-      Gather(soups, joined, &mesh.attributes.back());
+  for (size_t s = 0; s < soups.size(); ++s) {
+    const VertexSoup& soup = soups[s];
+    LACERTA_RETURN_IF_ERROR(CheckSoup(soup).WithContext("group " + std::to_string(s)));
+    if (mesh.surface.positions.size() + soup.positions.size() > kMaxVertices) {
+      return Unsupported("more than 4,294,967,294 vertices: cut the mesh into parts");
+    }
+    const auto first_vertex = static_cast<uint32_t>(mesh.surface.positions.size());
+    const size_t first_face = mesh.surface.triangles.size();
+    mesh.surface.positions.insert(mesh.surface.positions.end(), soup.positions.begin(), soup.positions.end());
+    for (const Triangle& t : soup.triangles) {
+      mesh.surface.triangles.push_back({first_vertex + t[0], first_vertex + t[1], first_vertex + t[2]});
+      mesh.groups.push_back(static_cast<uint32_t>(s));
+    }
+    for (const VertexSoup::Attribute& own : soup.attributes) {
+      MeshAttribute& attribute = AttributeLike(own, &mesh);
+      const uint32_t first_row = attribute.num_values();
+      attribute.values.insert(attribute.values.end(), own.values.begin(), own.values.end());
+      attribute.corners.resize(first_face, {kNone, kNone, kNone});
+      for (const Triangle& t : soup.triangles) attribute.corners.push_back({first_row + t[0], first_row + t[1], first_row + t[2]});
     }
   }
+  for (MeshAttribute& attribute : mesh.attributes) attribute.corners.resize(mesh.surface.triangles.size(), {kNone, kNone, kNone});
+  WeldExactly(&mesh);
   return mesh;
+}
+
+void WeldExactly(AttributedMesh* mesh) {
+  std::vector<float> table;
+  table.reserve(3 * mesh->surface.positions.size());
+  for (const Vec3f& p : mesh->surface.positions) table.insert(table.end(), {p.x, p.y, p.z});
+  WeldRows(3, &table, &mesh->surface.triangles);
+  mesh->surface.positions.clear();
+  for (size_t i = 0; i < table.size(); i += 3) mesh->surface.positions.push_back({table[i], table[i + 1], table[i + 2]});
+  for (MeshAttribute& attribute : mesh->attributes) WeldRows(attribute.components, &attribute.values, &attribute.corners);
 }
 
 std::vector<VertexSoup> SplitIntoSoups(const AttributedMesh& mesh, uint32_t num_groups) {

@@ -1,8 +1,5 @@
 #include "remesh/simplify.h"
 
-#include <Eigen/Core>
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +7,8 @@
 #include <queue>
 
 #include "geometry/bounding_box.h"
+#include "remesh/corner_rings.h"
+#include "remesh/placement.h"
 #include "remesh/quadric.h"
 
 namespace lacerta {
@@ -18,8 +17,6 @@ namespace {
 constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 // Vertices of more triangles stand still: the work of a collapse grows with them.
 constexpr uint32_t kMaxRing = 128;
-// Between a triangle and what it was before the collapse.
-constexpr double kMinNormalCosine = 0.2;
 // Of the plane through a border edge that holds the border in place; a triangle's plane weighs its area. The surface lost
 // behind a border that gives way is as narrow as the error, so that the border counts for less than the surface.
 constexpr double kBorderWeight = 0.3;
@@ -41,11 +38,6 @@ enum class Effect { kKeepsTopology, kPinches, kForbidden };
 // get small; the quadrics tell how small they are, but not of everything that gets lost.
 constexpr float kPinchPenalty = 4;
 
-struct Placement {
-  double cost = 0;
-  Vec3d position;
-};
-
 }  // namespace
 
 class Simplifier {
@@ -63,7 +55,7 @@ class Simplifier {
   Effect EffectOf(uint32_t u, uint32_t v, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v);
   void RemoveCoincident(uint32_t v);
   void Kill(uint32_t triangle);
-  bool TurnsOver(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around) const;
+  bool AnyTurnsOver(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around) const;
   void Collapse(uint32_t kept, uint32_t removed, const Vec3d& position, const std::vector<uint32_t>& around_removed, bool pinched);
   void RetryBlocked();
   uint32_t NextMark();
@@ -75,8 +67,7 @@ class Simplifier {
   std::vector<Triangle> triangles_;
   std::vector<uint8_t> dead_;  // per triangle
   std::vector<Quadric> quadrics_;
-  // The corners 3 t + k of each vertex as a ring, so that those of two vertices are joined at once.
-  std::vector<uint32_t> next_corner_, a_corner_;
+  CornerRings rings_;
   std::vector<uint32_t> version_, mark_;
   std::vector<uint32_t> valence_;  // living triangles of each vertex
   std::vector<uint8_t> on_border_;  // per vertex: of an edge that has not two triangles
@@ -92,8 +83,7 @@ Simplifier::Simplifier(const TriangleMesh& mesh, SimplificationSequence* sequenc
       triangles_(mesh.triangles),
       dead_(mesh.triangles.size(), 0),
       quadrics_(mesh.positions.size()),
-      next_corner_(3 * mesh.triangles.size()),
-      a_corner_(mesh.positions.size(), kNone),
+      rings_(mesh.positions.size(), mesh.triangles),
       version_(mesh.positions.size(), 0),
       mark_(mesh.positions.size(), 0),
       valence_(mesh.positions.size(), 0),
@@ -106,12 +96,8 @@ Simplifier::Simplifier(const TriangleMesh& mesh, SimplificationSequence* sequenc
   if (diagonal > 0) scale_ = diagonal;
   positions_.reserve(mesh.positions.size());
   for (const Vec3f& p : mesh.positions) positions_.push_back((Vec3Cast<double>(p) - center_) * (1 / scale_));
-  for (uint32_t corner = 0; corner < next_corner_.size(); ++corner) {
-    uint32_t& first = a_corner_[triangles_[corner / 3][corner % 3]];
-    next_corner_[corner] = first == kNone ? corner : next_corner_[first];
-    if (first != kNone) next_corner_[first] = corner;
-    first = corner;
-    ++valence_[triangles_[corner / 3][corner % 3]];
+  for (const Triangle& t : triangles_) {
+    for (const uint32_t v : t) ++valence_[v];
   }
 }
 
@@ -133,8 +119,8 @@ void Simplifier::ClassifyEdges() {
     bool operator<(const Side& b) const { return low != b.low ? low < b.low : high != b.high ? high < b.high : corner < b.corner; }
   };
   std::vector<Side> sides;
-  sides.reserve(next_corner_.size());
-  for (uint32_t corner = 0; corner < next_corner_.size(); ++corner) {
+  sides.reserve(3 * triangles_.size());
+  for (uint32_t corner = 0; corner < 3 * triangles_.size(); ++corner) {
     const Triangle& t = triangles_[corner / 3];
     const uint32_t a = t[(corner + 1) % 3], b = t[(corner + 2) % 3];
     sides.push_back({std::min(a, b), std::max(a, b), corner});
@@ -162,27 +148,8 @@ void Simplifier::ClassifyEdges() {
 Placement Simplifier::Place(uint32_t u, uint32_t v) const {
   Quadric q = quadrics_[u];
   q += quadrics_[v];
-  const Vec3d middle = (positions_[u] + positions_[v]) * 0.5;
-  const Eigen::Map<const Eigen::Vector3d> m(&middle.x);
-  // Where the quadric does not tell, as along a flat region or a crease, near the middle.
-  const double trace = q.quadratic.trace();
-  const double length = SquaredNorm(positions_[u] - positions_[v]);
-  Placement best;
-  best.position = middle;
-  best.cost = q.Evaluate(middle);
-  if (trace > 0) {
-    const Eigen::Matrix3d damped = q.quadratic + Eigen::Matrix3d::Identity() * (1e-3 * trace);
-    const Eigen::Vector3d gradient = q.quadratic * m + q.linear;
-    const Eigen::Vector3d x = m - damped.inverse() * gradient;
-    const Vec3d optimum{x[0], x[1], x[2]};
-    const double cost = q.Evaluate(optimum);
-    if (cost < best.cost && SquaredNorm(optimum - middle) < 4 * length) best = {cost, optimum};
-  }
-  for (const uint32_t end : {u, v}) {
-    const double cost = q.Evaluate(positions_[end]);
-    if (cost < best.cost) best = {cost, positions_[end]};
-  }
-  best.cost += edge_weight_ * length;
+  Placement best = PlaceBetween(q, positions_[u], positions_[v]);
+  best.cost += edge_weight_ * SquaredNorm(positions_[u] - positions_[v]);
   return best;
 }
 
@@ -196,21 +163,8 @@ uint32_t Simplifier::NextMark() { return ++last_mark_; }
 // The living triangles of v; forgets the corners of the others.
 std::vector<uint32_t> Simplifier::TrianglesOf(uint32_t v) {
   std::vector<uint32_t> result;
-  uint32_t previous = a_corner_[v];
-  if (previous == kNone) return result;
-  const uint32_t last = previous;
-  uint32_t first_kept = kNone, last_kept = kNone;
-  uint32_t corner = previous;
-  do {
-    corner = next_corner_[corner];
-    if (dead_[corner / 3]) continue;
-    if (first_kept == kNone) first_kept = corner;
-    if (last_kept != kNone) next_corner_[last_kept] = corner;
-    last_kept = corner;
-    result.push_back(corner / 3);
-  } while (corner != last);
-  if (last_kept != kNone) next_corner_[last_kept] = first_kept;
-  a_corner_[v] = last_kept;
+  rings_.Collect(v, dead_, &result);
+  for (uint32_t& corner : result) corner /= 3;
   return result;
 }
 
@@ -289,20 +243,13 @@ void Simplifier::Kill(uint32_t t) {
   for (const uint32_t v : triangles_[t]) --valence_[v];
 }
 
-bool Simplifier::TurnsOver(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around) const {
-  for (const uint32_t t : around) {
+bool Simplifier::AnyTurnsOver(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around) const {
+  return std::any_of(around.begin(), around.end(), [&](uint32_t t) {
     const Triangle& c = triangles_[t];
-    if (c[0] == other || c[1] == other || c[2] == other) continue;
+    if (c[0] == other || c[1] == other || c[2] == other) return false;
     const int k = c[0] == moved ? 0 : c[1] == moved ? 1 : 2;
-    const Vec3d &a = positions_[c[(k + 1) % 3]], &b = positions_[c[(k + 2) % 3]];
-    const Vec3d before = Cross(a - positions_[moved], b - positions_[moved]);
-    const Vec3d after = Cross(a - to, b - to);
-    const double size_before = Norm(before), size_after = Norm(after);
-    const double longest = std::max({SquaredNorm(a - to), SquaredNorm(b - to), SquaredNorm(b - a)});
-    if (size_after < 1e-3 * longest && size_after < size_before) return true;  // a needle where there was a better triangle
-    if (Dot(before, after) < kMinNormalCosine * size_before * size_after) return true;
-  }
-  return false;
+    return TurnsOver(positions_[moved], to, positions_[c[(k + 1) % 3]], positions_[c[(k + 2) % 3]]);
+  });
 }
 
 void Simplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position, const std::vector<uint32_t>& around_removed,
@@ -316,8 +263,7 @@ void Simplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position
       ++valence_[kept];
     }
   }
-  std::swap(next_corner_[a_corner_[kept]], next_corner_[a_corner_[removed]]);  // two rings become one
-  a_corner_[removed] = kNone;
+  rings_.Join(kept, removed);
   positions_[kept] = position;
   quadrics_[kept] += quadrics_[removed];
   on_border_[kept] = on_border_[kept] || on_border_[removed];
@@ -331,7 +277,7 @@ void Simplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position
 // What was not possible may be after changes nearby.
 void Simplifier::RetryBlocked() {
   for (const EdgeCandidate& edge : blocked_) {
-    if (edge.version == version_[edge.u] + version_[edge.v] && a_corner_[edge.u] != kNone && a_corner_[edge.v] != kNone) heap_.push(edge);
+    if (edge.version == version_[edge.u] + version_[edge.v] && !rings_.is_empty(edge.u) && !rings_.is_empty(edge.v)) heap_.push(edge);
   }
   blocked_.clear();
 }
@@ -349,7 +295,7 @@ void Simplifier::Run() {
     }
     const EdgeCandidate edge = heap_.top();
     heap_.pop();
-    if (edge.version != version_[edge.u] + version_[edge.v] || a_corner_[edge.u] == kNone || a_corner_[edge.v] == kNone) continue;
+    if (edge.version != version_[edge.u] + version_[edge.v] || rings_.is_empty(edge.u) || rings_.is_empty(edge.v)) continue;
     if (valence_[edge.u] + valence_[edge.v] > kMaxRing) {
       blocked_.push_back(edge);
       continue;
@@ -361,7 +307,7 @@ void Simplifier::Run() {
       heap_.push({kPinchPenalty * edge.cost, edge.u, edge.v, edge.version, true});
       continue;
     }
-    if (effect == Effect::kForbidden || TurnsOver(edge.u, edge.v, placement.position, around_u) || TurnsOver(edge.v, edge.u, placement.position, around_v)) {
+    if (effect == Effect::kForbidden || AnyTurnsOver(edge.u, edge.v, placement.position, around_u) || AnyTurnsOver(edge.v, edge.u, placement.position, around_v)) {
       blocked_.push_back(edge);
       continue;
     }

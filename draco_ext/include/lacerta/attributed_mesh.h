@@ -69,6 +69,10 @@ StatusOr<AttributedMesh> WeldSoups(const std::vector<VertexSoup>& soups);
 // without triangles becomes an empty soup. mesh: one that CheckAttributedMesh accepts. O(n log n).
 std::vector<VertexSoup> SplitIntoSoups(const AttributedMesh& mesh, uint32_t num_groups);
 
+// Makes equal positions one vertex and equal values of an attribute one row (-0 equals 0), and drops what no triangle uses; the order
+// of what is left is kept. mesh: one that CheckAttributedMesh accepts. O(n log n).
+void WeldExactly(AttributedMesh* mesh);
+
 // kInvalidData, with the reason, where array lengths, indices or values are not as said above.
 Status CheckAttributedMesh(const AttributedMesh& mesh);
 

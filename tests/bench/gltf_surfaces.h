@@ -1,0 +1,23 @@
+// The meshes of a glTF file as surfaces with attributes, for benches.
+#ifndef LACERTA_TESTS_BENCH_GLTF_SURFACES_H_
+#define LACERTA_TESTS_BENCH_GLTF_SURFACES_H_
+
+#include <string>
+#include <vector>
+
+#include "lacerta/attributed_mesh.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+struct NamedSurface {
+  std::string name;
+  AttributedMesh mesh;
+};
+
+// One surface for each glTF mesh that has triangles; joints and weights are left out. `vertices`: of all primitives as stored.
+StatusOr<std::vector<NamedSurface>> ReadGltfSurfaces(const std::string& path);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_TESTS_BENCH_GLTF_SURFACES_H_
