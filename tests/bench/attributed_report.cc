@@ -1,72 +1,82 @@
-// exploratory
+// Simplifies the surfaces of glTF files to errors of positions, texture coordinates and normals, and prints what remains as one line of
+// JSON for each mesh: attributed_report [--psnr DB] [--texels N] [--degrees N] FILE...
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 #include <string>
+#include <utility>
 
 #include "bench/gltf_surfaces.h"
-#include "lacerta/attribute_distance.h"
-#include "lacerta/surface_distance.h"
-#include "remesh/attributed_simplify.h"
+#include "remesh/simplify_to_errors.h"
 
-using namespace lacerta;
+namespace lacerta {
+namespace {
 
-static size_t NumWedges(const AttributedMesh& m) {
-  uint32_t g = 0;
-  for (uint32_t x : m.groups) g = std::max(g, x + 1);
-  size_t n = 0;
-  for (auto& s : SplitIntoSoups(m, std::max(g, 1u))) n += s.positions.size();
-  return n;
+struct Targets {
+  double psnr = 70, texels = 1, degrees = 2;
+};
+
+double Seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// Vertices as glTF counts them: one for each tuple of position and attribute values.
+size_t CountVertices(const AttributedMesh& mesh) {
+  uint32_t num_groups = 1;
+  for (const uint32_t group : mesh.groups) num_groups = std::max(num_groups, group + 1);
+  size_t count = 0;
+  for (const VertexSoup& soup : SplitIntoSoups(mesh, num_groups)) count += soup.positions.size();
+  return count;
 }
-static double Now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+Status Report(const NamedSurface& surface, const Targets& wanted) {
+  const AttributedMesh& mesh = surface.mesh;
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(mesh));
+  const ErrorTargets targets = TargetsFor(mesh, DistanceOfPsnr(wanted.psnr, meter.diagonal()), wanted.texels, wanted.degrees);
+  const double start = Seconds();
+  LACERTA_ASSIGN_OR_RETURN(const SimplifiedSurface simplified, SimplifyToErrors(mesh, meter, targets));
+  const double seconds = Seconds() - start;
+  const size_t before = CountVertices(mesh), after = CountVertices(simplified.mesh);
+  std::printf("{\"mesh\": \"%s\", \"vertices\": %zu, \"left\": %zu, \"share\": %.3f, \"triangles\": %zu, \"triangles_left\": %zu, \"psnr\": %.2f",
+              surface.name.c_str(), before, after, static_cast<double>(after) / static_cast<double>(before), mesh.surface.triangles.size(),
+              simplified.mesh.surface.triangles.size(), Psnr(simplified.errors.distance, meter.diagonal()));
+  std::string limit = "POSITION";
+  double worst = simplified.errors.distance / targets.distance;
+  for (size_t a = 0; a < mesh.attributes.size(); ++a) {
+    const AttributeError& error = simplified.errors.attributes[a];
+    std::printf(", \"%s\": [%.3f, %.3f, %.1f]", mesh.attributes[a].name.c_str(), error.rms_99, error.rms, error.max);
+    if (error.rms_99 / targets.attributes[a] <= worst) continue;
+    worst = error.rms_99 / targets.attributes[a];
+    limit = mesh.attributes[a].name;
+  }
+  std::printf(", \"limit\": \"%s\", \"seconds\": %.2f}\n", limit.c_str(), seconds);
+  return Status();
+}
+
+}  // namespace
+}  // namespace lacerta
 
 int main(int argc, char** argv) {
-  double uvw = 1, nw = 1;
-  if (getenv("UVW")) uvw = atof(getenv("UVW"));
-  if (getenv("NW")) nw = atof(getenv("NW"));
-  const double eps = 3.16e-4;
-  std::vector<double> shares = {1, 0.5, 0.25, 0.12, 0.06};
+  lacerta::Targets targets;
+  int failures = 0;
   for (int i = 1; i < argc; ++i) {
-    auto surfaces = ReadGltfSurfaces(argv[i]);
-    if (!surfaces.ok()) { printf("%s: %s\n", argv[i], surfaces.status().message().c_str()); continue; }
-    for (auto& s : surfaces.value()) {
-      auto check = CheckAttributedMesh(s.mesh);
-      if (!check.ok()) { printf("%s: %s\n", s.name.c_str(), check.message().c_str()); continue; }
-      const WedgeMesh w = MakeWedgeMesh(s.mesh);
-      size_t n[3] = {};
-      for (auto f : w.freedom) ++n[int(f)];
-      std::vector<double> weights;
-      printf("%s: %zu wedges %zu v %zu f; surface %zu curve %zu fixed %zu;", s.name.c_str(), NumWedges(s.mesh), s.mesh.surface.positions.size(), s.mesh.surface.triangles.size(), n[0], n[1], n[2]);
-      for (auto& a : s.mesh.attributes) {
-        double unit = a.kind == AttributeKind::kTextureCoordinates ? 1024 * uvw : a.kind == AttributeKind::kNormal || a.kind == AttributeKind::kTangent ? 28.65 * nw : 100;
-        weights.push_back(eps * unit);
-        printf(" %s(%u)", a.name.c_str(), a.num_values());
-      }
-      double t0 = Now();
-      const AttributedSimplification simp(s.mesh, weights);
-      double t1 = Now();
-      printf(" fewest %u  %.2f s\n", simp.fewest_triangles(), t1 - t0);
-      auto meter = SurfaceDistanceMeter::Create(s.mesh.surface);
-      auto ameter = AttributeDistanceMeter::Create(s.mesh);
-      if (!meter.ok() || !ameter.ok()) { printf("no meter\n"); continue; }
-      for (double share : shares) {
-        AttributedMesh m = simp.MeshWith(uint32_t(share * simp.num_input_triangles()));
-        auto check2 = CheckAttributedMesh(m);
-        if (!check2.ok()) printf("BAD %s\n", check2.message().c_str());
-        auto d = meter.value().Measure(m.surface, SurfaceDistanceOptions::RmsOnly(50000));
-        AttributeDistanceOptions o; o.num_samples = 50000;
-        double t2 = Now();
-        auto ad = ameter.value().Measure(m, o);
-        double t3 = Now();
-        printf("  %5zu f %5.1f%% %zu wedges %.1f%% psnr %.1f", m.surface.triangles.size(), 100 * share, NumWedges(m), 100.0 * double(NumWedges(m)) / double(NumWedges(s.mesh)), Psnr(d.value().Rms(), meter.value().diagonal()));
-        if (!ad.ok()) { printf("%s\n", ad.status().message().c_str()); continue; }
-        for (size_t a = 0; a < s.mesh.attributes.size(); ++a) {
-          auto e = ad.value().Worst(a), f = ad.value().forward[a];
-          printf(" | %s %.3f/%.3f max %.1f (fwd %.3f)", s.mesh.attributes[a].name.c_str(), e.rms_99, e.rms, e.max, f.rms_99);
-        }
-        printf("  [%.2fs]\n", t3 - t2);
-      }
+    const std::string argument = argv[i];
+    double* number = argument == "--psnr"      ? &targets.psnr
+                     : argument == "--texels"  ? &targets.texels
+                     : argument == "--degrees" ? &targets.degrees
+                                               : nullptr;
+    if (number != nullptr && i + 1 < argc) {
+      *number = std::atof(argv[++i]);
+      continue;
     }
+    const auto surfaces = lacerta::ReadGltfSurfaces(argument);
+    lacerta::Status status = surfaces.status();
+    for (size_t s = 0; surfaces.ok() && s < surfaces.value().size(); ++s) {
+      const lacerta::Status report = lacerta::Report(surfaces.value()[s], targets);
+      if (!report.ok()) status = report.WithContext(surfaces.value()[s].name);
+    }
+    if (status.ok()) continue;
+    std::fprintf(stderr, "%s: %s\n", argument.c_str(), status.message().c_str());
+    ++failures;
   }
+  return failures == 0 ? 0 : 1;
 }

@@ -1,0 +1,193 @@
+#include "remesh/simplify_to_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "remesh/attributed_simplify.h"
+
+namespace lacerta {
+namespace {
+
+constexpr double kRadiansPerDegree = 0.017453292519943295;
+
+double RangeOf(const MeshAttribute& attribute) {
+  double range = 0;
+  for (uint32_t c = 0; c < attribute.components; ++c) {
+    float low = std::numeric_limits<float>::infinity(), high = -low;
+    for (size_t i = c; i < attribute.values.size(); i += attribute.components) {
+      low = std::min(low, attribute.values[i]);
+      high = std::max(high, attribute.values[i]);
+    }
+    range = std::max(range, static_cast<double>(high) - static_cast<double>(low));
+  }
+  return range;
+}
+
+// One unit of AttributeError in units of the attribute.
+double ErrorUnit(const MeshAttribute& attribute, double texture_size) {
+  if (attribute.kind == AttributeKind::kTextureCoordinates) return 1 / texture_size;
+  const bool is_direction = attribute.kind == AttributeKind::kNormal || attribute.kind == AttributeKind::kTangent;
+  return is_direction && attribute.components >= 3 ? kRadiansPerDegree : 1;
+}
+
+struct Trial {
+  AttributedMesh mesh;
+  SurfaceErrors errors;
+  double ratio = 0;
+};
+
+class Search {
+ public:
+  Search(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets, const SimplifyToErrorsOptions& options)
+      : original_(original), meter_(meter), targets_(targets), options_(options) {}
+
+  // The smallest surface of the sequence that meets the targets by the samples of the search; nothing where none does.
+  StatusOr<std::optional<Trial>> Smallest(const AttributedSimplification& sequence) const {
+    constexpr int kMaxTrials = 9;
+    constexpr double kGoodEnough = 0.97, kCloseEnough = 1.01;
+    double too_few = std::max(sequence.fewest_triangles(), 1u) - 0.5, enough = sequence.num_input_triangles() + 0.5;
+    double next = 0.3 * enough;
+    std::optional<Trial> best;
+    for (int i = 0; i < kMaxTrials && enough > kCloseEnough * too_few; ++i) {
+      const auto size = static_cast<uint32_t>(std::clamp(next, too_few + 0.5, std::max(enough - 0.5, too_few + 0.5)));
+      LACERTA_ASSIGN_OR_RETURN(Trial trial, Measured(sequence.MeshWith(size), options_.num_search_samples));
+      const double ratio = trial.ratio;
+      if (ratio <= 1) {
+        enough = std::min<double>(size, static_cast<double>(trial.mesh.surface.triangles.size()));
+        best = std::move(trial);
+        if (ratio >= kGoodEnough || enough - 1 < too_few) break;
+      } else {
+        too_few = size;
+      }
+      // Errors go about as one over the number of triangles; where that leads out of the bracket or nowhere, its middle.
+      next = size * std::clamp(1.01 * ratio, 0.2, 4.0);
+      if (i >= 4 || next <= too_few || next >= enough) next = std::sqrt(std::max(too_few, 1.0) * enough);
+    }
+    return best;
+  }
+
+  StatusOr<Trial> Measured(AttributedMesh mesh, uint64_t num_samples) const {
+    Trial trial;
+    LACERTA_ASSIGN_OR_RETURN(trial.errors, meter_.Measure(mesh, num_samples));
+    trial.ratio = WorstRatio(trial.errors, targets_);
+    trial.mesh = std::move(mesh);
+    return trial;
+  }
+
+  std::vector<double> FirstWeights() const {
+    std::vector<double> weights;
+    for (size_t a = 0; a < original_.attributes.size(); ++a) {
+      const double allowed = targets_.attributes[a] * ErrorUnit(original_.attributes[a], meter_.texture_size());
+      weights.push_back(LimitWeight(targets_.distance / meter_.diagonal() / allowed));
+    }
+    return weights;
+  }
+
+  // More for what is nearer to its target than the positions, less for what is farther.
+  void Reweight(const SurfaceErrors& errors, std::vector<double>* weights) const {
+    constexpr double kLeast = 0.02, kExponent = 0.7;
+    const double position = std::max(errors.distance / targets_.distance, kLeast);
+    for (size_t a = 0; a < weights->size(); ++a) {
+      const double own = std::max(errors.attributes[a].rms_99 / targets_.attributes[a], kLeast);
+      (*weights)[a] = LimitWeight((*weights)[a] * std::pow(own / position, kExponent));
+    }
+  }
+
+ private:
+  static double LimitWeight(double weight) { return std::isfinite(weight) ? std::clamp(weight, 1e-9, 1e3) : 1e3; }
+
+  const AttributedMesh& original_;
+  const SurfaceErrorMeter& meter_;
+  const ErrorTargets& targets_;
+  const SimplifyToErrorsOptions& options_;
+};
+
+Status CheckTargets(const AttributedMesh& mesh, const ErrorTargets& targets) {
+  if (targets.attributes.size() != mesh.attributes.size()) return InvalidArgument("there is not one target for each attribute");
+  if (!(targets.distance > 0)) return InvalidArgument("the target of the distance must be above 0");
+  for (size_t a = 0; a < targets.attributes.size(); ++a) {
+    if (!(targets.attributes[a] > 0)) return InvalidArgument(mesh.attributes[a].name + ": its target must be above 0");
+  }
+  return Status();
+}
+
+}  // namespace
+
+ErrorTargets TargetsFor(const AttributedMesh& mesh, double distance, double texels, double degrees) {
+  ErrorTargets targets{distance, {}};
+  for (const MeshAttribute& attribute : mesh.attributes) {
+    switch (attribute.kind) {
+      case AttributeKind::kTextureCoordinates:
+        targets.attributes.push_back(texels);
+        break;
+      case AttributeKind::kNormal:
+      case AttributeKind::kTangent:
+        targets.attributes.push_back(degrees);
+        break;
+      case AttributeKind::kColor:
+      case AttributeKind::kWeights:
+        targets.attributes.push_back(1.0 / 256);
+        break;
+      case AttributeKind::kGeneric:
+        targets.attributes.push_back(std::max(1e-3 * RangeOf(attribute), 1e-12));
+        break;
+    }
+  }
+  return targets;
+}
+
+double WorstRatio(const SurfaceErrors& errors, const ErrorTargets& targets) {
+  double worst = errors.distance / targets.distance;
+  for (size_t a = 0; a < targets.attributes.size(); ++a) worst = std::max(worst, errors.attributes[a].rms_99 / targets.attributes[a]);
+  return worst;
+}
+
+StatusOr<SurfaceErrorMeter> SurfaceErrorMeter::Create(const AttributedMesh& original, double texture_size) {
+  LACERTA_ASSIGN_OR_RETURN(SurfaceDistanceMeter distance, SurfaceDistanceMeter::Create(original.surface));
+  LACERTA_ASSIGN_OR_RETURN(AttributeDistanceMeter attributes, AttributeDistanceMeter::Create(original));
+  return SurfaceErrorMeter(std::move(distance), std::move(attributes), texture_size);
+}
+
+StatusOr<SurfaceErrors> SurfaceErrorMeter::Measure(const AttributedMesh& mesh, uint64_t num_samples) const {
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, distance_.Measure(mesh.surface, SurfaceDistanceOptions::RmsOnly(num_samples)));
+  AttributeDistanceOptions options;
+  options.num_samples = num_samples;
+  options.texture_size = texture_size_;
+  LACERTA_ASSIGN_OR_RETURN(const AttributeDistance attributes, attributes_.Measure(mesh, options));
+  SurfaceErrors errors{distance.Rms(), {}};
+  for (size_t a = 0; a < attributes.forward.size(); ++a) errors.attributes.push_back(attributes.Worst(a));
+  return errors;
+}
+
+StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
+                                             const SimplifyToErrorsOptions& options) {
+  LACERTA_RETURN_IF_ERROR(CheckTargets(original, targets));
+  const Search search(original, meter, targets, options);
+  std::vector<double> weights = search.FirstWeights();
+  std::optional<Trial> best;
+  for (int i = 0; i < std::max(options.num_weightings, 1); ++i) {
+    const AttributedSimplification sequence(original, weights);
+    LACERTA_ASSIGN_OR_RETURN(std::optional<Trial> trial, search.Smallest(sequence));
+    if (!trial) break;
+    search.Reweight(trial->errors, &weights);
+    // Few samples may have been too kind: what counts is measured with more, and given more triangles until it holds.
+    for (double margin = 1;; margin *= 1.02) {
+      const auto wanted = static_cast<double>(trial->mesh.surface.triangles.size()) * (margin == 1 ? 1 : std::max(1.01, trial->ratio * 1.01));
+      const bool is_last = wanted >= sequence.num_input_triangles();
+      if (margin > 1) trial->mesh = sequence.MeshWith(static_cast<uint32_t>(wanted));
+      LACERTA_ASSIGN_OR_RETURN(trial, search.Measured(std::move(trial->mesh), options.num_samples));
+      if (trial->ratio <= 1 || is_last) break;
+    }
+    if (!best || (trial->ratio <= 1 && trial->mesh.surface.triangles.size() < best->mesh.surface.triangles.size())) best = std::move(trial);
+  }
+  if (!best) {
+    LACERTA_ASSIGN_OR_RETURN(best, search.Measured(original, options.num_samples));
+  }
+  return SimplifiedSurface{std::move(best->mesh), std::move(best->errors), best->ratio <= 1};
+}
+
+}  // namespace lacerta

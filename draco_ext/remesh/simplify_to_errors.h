@@ -1,0 +1,72 @@
+// The smallest simplified surface that stays within errors of positions and attributes.
+#ifndef LACERTA_REMESH_SIMPLIFY_TO_ERRORS_H_
+#define LACERTA_REMESH_SIMPLIFY_TO_ERRORS_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "lacerta/attribute_distance.h"
+#include "lacerta/attributed_mesh.h"
+#include "lacerta/status.h"
+#include "lacerta/surface_distance.h"
+
+namespace lacerta {
+
+// Of a surface against the original.
+struct SurfaceErrors {
+  double distance = 0;                     // two-sided RMS distance d_S, model units
+  std::vector<AttributeError> attributes;  // the worse of both directions, for each attribute of the original
+};
+
+// What is allowed: `attributes` bound AttributeError::rms_99, in its units. All > 0; infinity: anything will do.
+struct ErrorTargets {
+  double distance = 0;
+  std::vector<double> attributes;
+};
+
+// For every texture coordinate `texels`, for normals and tangents `degrees`; joint weights and colors 1/256, all others 1/1000 of
+// their range.
+ErrorTargets TargetsFor(const AttributedMesh& mesh, double distance, double texels, double degrees);
+
+// The worst error relative to its target: the targets are met where it is at most 1.
+double WorstRatio(const SurfaceErrors& errors, const ErrorTargets& targets);
+
+class SurfaceErrorMeter {
+ public:
+  // Copies the original. Fails as SurfaceDistanceMeter and AttributeDistanceMeter do.
+  static StatusOr<SurfaceErrorMeter> Create(const AttributedMesh& original, double texture_size = 1024);
+
+  StatusOr<SurfaceErrors> Measure(const AttributedMesh& mesh, uint64_t num_samples) const;
+
+  double diagonal() const { return distance_.diagonal(); }
+  double texture_size() const { return texture_size_; }
+
+ private:
+  SurfaceErrorMeter(SurfaceDistanceMeter distance, AttributeDistanceMeter attributes, double texture_size)
+      : distance_(std::move(distance)), attributes_(std::move(attributes)), texture_size_(texture_size) {}
+
+  SurfaceDistanceMeter distance_;
+  AttributeDistanceMeter attributes_;
+  double texture_size_;
+};
+
+struct SimplifyToErrorsOptions {
+  uint64_t num_samples = 100'000;        // of the measure that the result is held to
+  uint64_t num_search_samples = 20'000;  // while the size is looked for
+  int num_weightings = 3;                // how often the weights of attributes are set anew by what limited the size
+};
+
+struct SimplifiedSurface {
+  AttributedMesh mesh;
+  SurfaceErrors errors;       // measured with num_samples
+  bool meets_targets = true;  // false only where even the input's own triangles do not, by the precision of the measure
+};
+
+// The smallest mesh found of those that AttributedSimplification makes of the original and that meet the targets. meter: of the
+// original. The weight of each attribute against positions is what the targets say, then changed by which of them limits the size.
+StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
+                                             const SimplifyToErrorsOptions& options = {});
+
+}  // namespace lacerta
+
+#endif  // LACERTA_REMESH_SIMPLIFY_TO_ERRORS_H_
