@@ -7,8 +7,8 @@ void AttributeQuadrics::AddTriangle(const std::array<uint32_t, 3>& nodes, const 
   const Vec3d e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
   const double area = Norm(Cross(e1, e2)) / 2;
   if (!(area > 0)) return;
-  // Across a needle the slope is anything: the ridge keeps it small where the height is below a hundredth of the length.
-  constexpr double kRidge = 1e-4;
+  // Across a needle the slope is anything: the ridge keeps it small where the height is below 1/3000 of the length.
+  constexpr double kRidge = 1e-7;
   const double ridge = kRidge * (SquaredNorm(e1) + SquaredNorm(e2));
   const double g11 = SquaredNorm(e1) + ridge, g12 = Dot(e1, e2), g22 = SquaredNorm(e2) + ridge;
   const double det = g11 * g22 - g12 * g12;

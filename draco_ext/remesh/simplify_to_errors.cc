@@ -82,15 +82,15 @@ class Search {
     std::vector<double> weights;
     for (size_t a = 0; a < original_.attributes.size(); ++a) {
       const double allowed = targets_.attributes[a] * ErrorUnit(original_.attributes[a], meter_.texture_size());
-      weights.push_back(LimitWeight(targets_.distance / meter_.diagonal() / allowed));
+      weights.push_back(LimitWeight(ShapeTarget() / meter_.diagonal() / allowed));
     }
     return weights;
   }
 
   // More for what is nearer to its target than the positions, less for what is farther.
   void Reweight(const SurfaceErrors& errors, std::vector<double>* weights) const {
-    constexpr double kLeast = 0.02, kExponent = 0.7;
-    const double position = std::max(errors.distance / targets_.distance, kLeast);
+    constexpr double kLeast = 0.05, kExponent = 0.7;
+    const double position = std::max(errors.distance / ShapeTarget(), kLeast);
     for (size_t a = 0; a < weights->size(); ++a) {
       const double own = std::max(errors.attributes[a].rms_99 / targets_.attributes[a], kLeast);
       (*weights)[a] = LimitWeight((*weights)[a] * std::pow(own / position, kExponent));
@@ -98,7 +98,13 @@ class Search {
   }
 
  private:
-  static double LimitWeight(double weight) { return std::isfinite(weight) ? std::clamp(weight, 1e-9, 1e3) : 1e3; }
+  static double LimitWeight(double weight) { return std::clamp(weight, 1e-9, 1e3); }
+
+  // Whatever is allowed, the shape has to be kept as far as attributes are compared at closest points.
+  double ShapeTarget() const {
+    constexpr double kFarthest = 1e-3;
+    return std::min(targets_.distance, kFarthest * meter_.diagonal());
+  }
 
   const AttributedMesh& original_;
   const SurfaceErrorMeter& meter_;

@@ -1,0 +1,70 @@
+#include "remesh/simplify_to_errors.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "shapes/attributed_shapes.h"
+
+namespace lacerta {
+namespace {
+
+constexpr double kAny = std::numeric_limits<double>::infinity();
+
+SimplifiedSurface Simplify(const AttributedMesh& mesh, const ErrorTargets& targets) {
+  const auto meter = SurfaceErrorMeter::Create(mesh);
+  EXPECT_TRUE(meter.ok()) << meter.status().message();
+  auto result = SimplifyToErrors(mesh, meter.value(), targets);
+  EXPECT_TRUE(result.ok()) << result.status().message();
+  return std::move(result).value();
+}
+
+TEST(SimplifyToErrorsTest, MeetsEachTargetAndNotByFar) {
+  const AttributedMesh mesh = WeldSoups({shapes::TexturedGrid(60, 60, 0.3f)}).value();
+  const ErrorTargets position{1e-3, {kAny, kAny}}, texture{kAny, {0.3, kAny}}, normal{kAny, {kAny, 2}}, all{1e-3, {0.3, 2}};
+  size_t most = 0;
+  for (const ErrorTargets& targets : {position, texture, normal}) {
+    const SimplifiedSurface result = Simplify(mesh, targets);
+    EXPECT_TRUE(result.meets_targets);
+    EXPECT_LE(WorstRatio(result.errors, targets), 1);
+    EXPECT_GE(WorstRatio(result.errors, targets), 0.8);
+    EXPECT_LT(result.mesh.surface.triangles.size(), mesh.surface.triangles.size() / 4);
+    most = std::max(most, result.mesh.surface.triangles.size());
+  }
+  const SimplifiedSurface result = Simplify(mesh, all);
+  EXPECT_LE(WorstRatio(result.errors, all), 1);
+  EXPECT_GE(result.mesh.surface.triangles.size(), 0.9 * static_cast<double>(most));
+  EXPECT_LE(result.mesh.surface.triangles.size(), 2.5 * static_cast<double>(most));
+}
+
+TEST(SimplifyToErrorsTest, WhatCannotBeSimplifiedComesBack) {
+  const AttributedMesh mesh = WeldSoups({shapes::TexturedGrid(6, 6, 0.3f)}).value();
+  const SimplifiedSurface result = Simplify(mesh, {1e-6, {1e-2, 1e-2}});
+  EXPECT_EQ(result.mesh.surface.triangles.size(), 72u);
+}
+
+TEST(SimplifyToErrorsTest, GoesToTheEndWhereTargetsAllow) {
+  const AttributedMesh mesh = WeldSoups({shapes::TexturedBox(6)}).value();
+  EXPECT_EQ(Simplify(mesh, {1e-3, {1, 1}}).mesh.surface.triangles.size(), 12u);
+}
+
+TEST(SimplifyToErrorsTest, TargetsAreByKind) {
+  VertexSoup soup = shapes::TexturedGrid(2, 2);
+  soup.attributes.push_back({"COLOR_0", AttributeKind::kColor, 1, std::vector<float>(9, 0.5f)});
+  soup.attributes.push_back({"_HEAT", AttributeKind::kGeneric, 1, {0, 1, 2, 3, 4, 5, 6, 7, 8}});
+  const ErrorTargets targets = TargetsFor(WeldSoups({soup}).value(), 0.5, 2, 3);
+  EXPECT_EQ(targets.distance, 0.5);
+  EXPECT_THAT(targets.attributes, testing::ElementsAre(2, 3, 1.0 / 256, testing::DoubleNear(0.008, 1e-9)));
+}
+
+TEST(SimplifyToErrorsTest, RefusesTargetsThatAreNone) {
+  const AttributedMesh mesh = WeldSoups({shapes::TexturedGrid(2, 2)}).value();
+  const SurfaceErrorMeter meter = SurfaceErrorMeter::Create(mesh).value();
+  EXPECT_EQ(SimplifyToErrors(mesh, meter, {1, {1}}).status().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(SimplifyToErrors(mesh, meter, {0, {1, 1}}).status().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(SimplifyToErrors(mesh, meter, {1, {1, 0}}).status().code(), StatusCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace lacerta
