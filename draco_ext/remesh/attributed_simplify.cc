@@ -1,9 +1,9 @@
 #include "remesh/attributed_simplify.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
+#include "remesh/attribute_values.h"
 #include "remesh/attributed_simplifier.h"
 
 namespace lacerta {
@@ -26,22 +26,6 @@ size_t CountUpTo(const std::vector<Event>& events, size_t num_collapses) {
   return static_cast<size_t>(end - events.begin());
 }
 
-// Makes a blend of values legal again.
-void Legalize(const MeshAttribute& input, const std::vector<float>& low, const std::vector<float>& high, float* row) {
-  const uint32_t n = input.components;
-  if ((input.kind == AttributeKind::kNormal || input.kind == AttributeKind::kTangent) && n >= 3) {
-    const Vec3f unit = Normalized(Vec3f{row[0], row[1], row[2]});
-    for (int i = 0; i < 3; ++i) row[i] = unit[i];
-    if (n > 3) row[3] = row[3] < 0 ? -1.0f : 1.0f;
-  } else if (input.kind == AttributeKind::kColor) {
-    for (uint32_t i = 0; i < n; ++i) row[i] = std::clamp(row[i], low[i], high[i]);
-  } else if (input.kind == AttributeKind::kWeights) {
-    float sum = 0;
-    for (uint32_t i = 0; i < n; ++i) sum += row[i] = std::max(row[i], 0.0f);
-    for (uint32_t i = 0; i < n && sum > 0; ++i) row[i] /= sum;
-  }
-}
-
 }  // namespace
 
 AttributedSimplification::AttributedSimplification(const AttributedMesh& input, const std::vector<double>& weights)
@@ -53,11 +37,7 @@ void AttributedSimplification::WriteValues(size_t num_collapses, const NodeHisto
                                            const MeshAttribute& input, MeshAttribute* output, std::vector<uint32_t>* becomes) const {
   const size_t columns = input.components;
   *becomes = FollowMerges(nodes.values.size(), history.merges.data(), CountUpTo(history.merges, num_collapses));
-  std::vector<float> low(columns, INFINITY), high(columns, -INFINITY);
-  for (size_t i = 0; i < input.values.size(); ++i) {
-    low[i % columns] = std::min(low[i % columns], input.values[i]);
-    high[i % columns] = std::max(high[i % columns], input.values[i]);
-  }
+  const ValueRange range(input);
   output->values.resize(nodes.values.size() * columns);
   for (size_t node = 0; node < nodes.values.size(); ++node) {
     std::copy_n(&input.values[nodes.values[node] * columns], columns, &output->values[node * columns]);
@@ -68,7 +48,7 @@ void AttributedSimplification::WriteValues(size_t num_collapses, const NodeHisto
     if (last_move[node] == kNone) continue;
     float* row = &output->values[node * columns];
     std::copy_n(&history.values[last_move[node] * columns], columns, row);
-    Legalize(input, low, high, row);
+    range.Legalize(row);
   }
 }
 

@@ -7,11 +7,15 @@
 #include <string>
 #include <utility>
 
+#include "geometry/group_surface.h"
+#include "remesh/attribute_fit.h"
 #include "remesh/attributed_simplify.h"
+#include "remesh/mesh_fit.h"
 
 namespace lacerta {
 namespace {
 
+constexpr int kFitRounds = 2;
 constexpr double kRadiansPerDegree = 0.017453292519943295;
 
 double RangeOf(const MeshAttribute& attribute) {
@@ -43,7 +47,20 @@ struct Trial {
 class Search {
  public:
   Search(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets, const SimplifyToErrorsOptions& options)
-      : original_(original), meter_(meter), targets_(targets), options_(options) {}
+      : original_(original), meter_(meter), targets_(targets), options_(options), fit_target_(original.surface, options.num_search_samples), surface_(original) {}
+
+  // The surface of that size, moved to where it is closest to the original.
+  AttributedMesh Fitted(const AttributedSimplification& sequence, uint32_t num_triangles) const {
+    AttributedMesh mesh = sequence.MeshWith(num_triangles);
+    if (mesh.surface.triangles.size() == sequence.num_input_triangles()) return mesh;
+    FitToSurface(fit_target_, MeshNeighbors(mesh.surface), RateModel{}, kFitRounds, &mesh.surface);
+    AttributeFitOptions fit;
+    fit.num_samples = options_.num_search_samples;
+    fit.diagonal = meter_.diagonal();
+    FitAttributes(surface_, fit, &mesh);
+    return mesh;
+  }
+
 
   // The smallest surface of the sequence that meets the targets by the samples of the search; nothing where none does.
   StatusOr<std::optional<Trial>> Smallest(const AttributedSimplification& sequence) const {
@@ -54,7 +71,7 @@ class Search {
     std::optional<Trial> best;
     for (int i = 0; i < kMaxTrials && enough > kCloseEnough * too_few; ++i) {
       const auto size = static_cast<uint32_t>(std::clamp(next, too_few + 0.5, std::max(enough - 0.5, too_few + 0.5)));
-      LACERTA_ASSIGN_OR_RETURN(Trial trial, Measured(sequence.MeshWith(size), options_.num_search_samples));
+      LACERTA_ASSIGN_OR_RETURN(Trial trial, Measured(Fitted(sequence, size), options_.num_search_samples));
       const double ratio = trial.ratio;
       if (ratio <= 1) {
         enough = std::min<double>(size, static_cast<double>(trial.mesh.surface.triangles.size()));
@@ -110,6 +127,8 @@ class Search {
   const SurfaceErrorMeter& meter_;
   const ErrorTargets& targets_;
   const SimplifyToErrorsOptions& options_;
+  FitTarget fit_target_;
+  GroupSurface surface_;
 };
 
 Status CheckTargets(const AttributedMesh& mesh, const ErrorTargets& targets) {
@@ -184,7 +203,7 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
     for (double margin = 1;; margin *= 1.02) {
       const auto wanted = static_cast<double>(trial->mesh.surface.triangles.size()) * (margin == 1 ? 1 : std::max(1.01, trial->ratio * 1.01));
       const bool is_last = wanted >= sequence.num_input_triangles();
-      if (margin > 1) trial->mesh = sequence.MeshWith(static_cast<uint32_t>(wanted));
+      if (margin > 1) trial->mesh = search.Fitted(sequence, static_cast<uint32_t>(wanted));
       LACERTA_ASSIGN_OR_RETURN(trial, search.Measured(std::move(trial->mesh), options.num_samples));
       if (trial->ratio <= 1 || is_last) break;
     }
