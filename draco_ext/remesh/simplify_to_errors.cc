@@ -10,7 +10,7 @@
 #include "geometry/group_surface.h"
 #include "remesh/attribute_fit.h"
 #include "remesh/attributed_simplify.h"
-#include "remesh/mesh_fit.h"
+#include "remesh/curve_fit.h"
 
 namespace lacerta {
 namespace {
@@ -53,7 +53,7 @@ class Search {
   AttributedMesh Fitted(const AttributedSimplification& sequence, uint32_t num_triangles) const {
     AttributedMesh mesh = sequence.MeshWith(num_triangles);
     if (mesh.surface.triangles.size() == sequence.num_input_triangles()) return mesh;
-    FitToSurface(fit_target_, MeshNeighbors(mesh.surface), RateModel{}, kFitRounds, &mesh.surface);
+    FitBesideCurves(fit_target_, kFitRounds, &mesh);
     AttributeFitOptions fit;
     fit.num_samples = options_.num_search_samples;
     fit.diagonal = meter_.diagonal();

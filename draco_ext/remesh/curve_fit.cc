@@ -1,0 +1,70 @@
+#include "remesh/curve_fit.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "remesh/mesh_fit.h"
+#include "remesh/wedge_mesh.h"
+
+namespace lacerta {
+namespace {
+
+std::vector<VertexFreedom> FreedomOf(const AttributedMesh& mesh) {
+  const WedgeMesh wedges = MakeWedgeMesh(mesh);
+  std::vector<VertexFreedom> freedom(mesh.surface.positions.size(), VertexFreedom::kSurface);
+  for (uint32_t v = 0; v < wedges.num_vertices(); ++v) {
+    VertexFreedom& own = freedom[wedges.source_vertex[v]];
+    own = std::max(own, wedges.freedom[v]);
+  }
+  return freedom;
+}
+
+std::vector<Vec3d> VertexNormals(const TriangleMesh& mesh) {
+  std::vector<Vec3d> normals(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
+    const Vec3d normal = Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a);
+    for (const uint32_t v : t) normals[v] += normal;
+  }
+  for (Vec3d& n : normals) n = Normalized(n);
+  return normals;
+}
+
+bool IsTurnedOver(const Triangle& t, const std::vector<Vec3f>& before, const std::vector<Vec3f>& after) {
+  const auto normal = [&](const std::vector<Vec3f>& p) {
+    const Vec3d a = Vec3Cast<double>(p[t[0]]);
+    return Cross(Vec3Cast<double>(p[t[1]]) - a, Vec3Cast<double>(p[t[2]]) - a);
+  };
+  const Vec3d old_normal = normal(before), new_normal = normal(after);
+  return Dot(old_normal, new_normal) < 0.2 * Norm(old_normal) * Norm(new_normal);
+}
+
+}  // namespace
+
+void FitBesideCurves(const FitTarget& target, int rounds, AttributedMesh* mesh) {
+  TriangleMesh& surface = mesh->surface;
+  const std::vector<Vec3f> before = surface.positions;
+  const std::vector<VertexFreedom> freedom = FreedomOf(*mesh);
+  const std::vector<Vec3d> normals = VertexNormals(surface);
+  FitToSurface(target, MeshNeighbors(surface), RateModel{}, rounds, &surface);
+  for (size_t v = 0; v < before.size(); ++v) {
+    if (freedom[v] == VertexFreedom::kSurface) continue;
+    const Vec3d old = Vec3Cast<double>(before[v]);
+    const double along = freedom[v] == VertexFreedom::kCurve ? Dot(Vec3Cast<double>(surface.positions[v]) - old, normals[v]) : 0;
+    surface.positions[v] = Vec3Cast<float>(old + normals[v] * along);
+  }
+  constexpr int kRounds = 8;  // of taking back what the others make necessary; then everything
+  for (int round = 0;; ++round) {
+    bool any = false;
+    for (const Triangle& t : surface.triangles) {
+      if (!IsTurnedOver(t, before, surface.positions)) continue;
+      any = true;
+      for (const uint32_t v : t) surface.positions[v] = before[v];
+    }
+    if (!any) return;
+    if (round == kRounds) break;
+  }
+  surface.positions = before;
+}
+
+}  // namespace lacerta
