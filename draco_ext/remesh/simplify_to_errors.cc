@@ -38,6 +38,12 @@ double ErrorUnit(const MeshAttribute& attribute, double texture_size) {
   return is_direction && attribute.components >= 3 ? kRadiansPerDegree : 1;
 }
 
+// Of one attribute, as WorstRatio of all.
+double AttributeRatio(const SurfaceErrors& errors, const ErrorTargets& targets, size_t attribute) {
+  const double ratio = errors.attributes[attribute].rms_99 / targets.attributes[attribute];
+  return targets.everywhere.empty() ? ratio : std::max(ratio, errors.attributes[attribute].rms / targets.everywhere[attribute]);
+}
+
 struct Trial {
   AttributedMesh mesh;
   SurfaceErrors errors;
@@ -47,7 +53,8 @@ struct Trial {
 class Search {
  public:
   Search(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets, const SimplifyToErrorsOptions& options)
-      : original_(original), meter_(meter), targets_(targets), options_(options), fit_target_(original.surface, options.num_search_samples), surface_(original) {}
+      : original_(original), meter_(meter), targets_(targets), options_(options), num_fit_samples_(std::clamp<size_t>(original.surface.triangles.size(), 10'000, 100'000)),
+        fit_target_(original.surface, num_fit_samples_), surface_(original) {}
 
   // The surface of that size, moved to where it is closest to the original.
   AttributedMesh Fitted(const AttributedSimplification& sequence, uint32_t num_triangles) const {
@@ -55,19 +62,19 @@ class Search {
     if (mesh.surface.triangles.size() == sequence.num_input_triangles()) return mesh;
     FitBesideCurves(fit_target_, kFitRounds, &mesh);
     AttributeFitOptions fit;
-    fit.num_samples = options_.num_search_samples;
+    fit.num_samples = num_fit_samples_;
     fit.diagonal = meter_.diagonal();
     FitAttributes(surface_, fit, &mesh);
     return mesh;
   }
 
 
-  // The smallest surface of the sequence that meets the targets by the samples of the search; nothing where none does.
-  StatusOr<std::optional<Trial>> Smallest(const AttributedSimplification& sequence) const {
-    constexpr int kMaxTrials = 9;
-    constexpr double kGoodEnough = 0.97, kCloseEnough = 1.01;
+  // The smallest surface of the sequence that meets the targets by the samples of the search; nothing where none does. guess: its size.
+  StatusOr<std::optional<Trial>> Smallest(const AttributedSimplification& sequence, double guess) const {
+    constexpr int kMaxTrials = 7;
+    constexpr double kGoodEnough = 0.97, kCloseEnough = 1.02;
     double too_few = std::max(sequence.fewest_triangles(), 1u) - 0.5, enough = sequence.num_input_triangles() + 0.5;
-    double next = 0.3 * enough;
+    double next = guess;
     std::optional<Trial> best;
     for (int i = 0; i < kMaxTrials && enough > kCloseEnough * too_few; ++i) {
       const auto size = static_cast<uint32_t>(std::clamp(next, too_few + 0.5, std::max(enough - 0.5, too_few + 0.5)));
@@ -85,6 +92,21 @@ class Search {
       if (i >= 4 || next <= too_few || next >= enough) next = std::sqrt(std::max(too_few, 1.0) * enough);
     }
     return best;
+  }
+
+  // Few samples may have been too kind: what counts is measured with more, and given more triangles until it holds.
+  Status Confirm(const std::vector<double>& weights, Trial* trial) const {
+    LACERTA_ASSIGN_OR_RETURN(*trial, Measured(std::move(trial->mesh), options_.num_samples));
+    if (trial->ratio <= 1) return Status();
+    const AttributedSimplification sequence(original_, weights);
+    for (double margin = 1.01; trial->ratio > 1; margin *= 1.01) {
+      const double size = static_cast<double>(trial->mesh.surface.triangles.size()) * trial->ratio * margin;
+      const uint32_t all = sequence.num_input_triangles();
+      const uint32_t wanted = size < all ? static_cast<uint32_t>(size) : all;
+      LACERTA_ASSIGN_OR_RETURN(*trial, Measured(Fitted(sequence, wanted), options_.num_samples));
+      if (wanted == all) break;
+    }
+    return Status();
   }
 
   StatusOr<Trial> Measured(AttributedMesh mesh, uint64_t num_samples) const {
@@ -109,7 +131,7 @@ class Search {
     constexpr double kLeast = 0.05, kExponent = 0.7;
     const double position = std::max(errors.distance / ShapeTarget(), kLeast);
     for (size_t a = 0; a < weights->size(); ++a) {
-      const double own = std::max(errors.attributes[a].rms_99 / targets_.attributes[a], kLeast);
+      const double own = std::max(AttributeRatio(errors, targets_, a), kLeast);
       (*weights)[a] = LimitWeight((*weights)[a] * std::pow(own / position, kExponent));
     }
   }
@@ -127,15 +149,17 @@ class Search {
   const SurfaceErrorMeter& meter_;
   const ErrorTargets& targets_;
   const SimplifyToErrorsOptions& options_;
+  const size_t num_fit_samples_;
   FitTarget fit_target_;
   GroupSurface surface_;
 };
 
 Status CheckTargets(const AttributedMesh& mesh, const ErrorTargets& targets) {
   if (targets.attributes.size() != mesh.attributes.size()) return InvalidArgument("there is not one target for each attribute");
+  if (!targets.everywhere.empty() && targets.everywhere.size() != mesh.attributes.size()) return InvalidArgument("there is not one target everywhere for each attribute");
   if (!(targets.distance > 0)) return InvalidArgument("the target of the distance must be above 0");
   for (size_t a = 0; a < targets.attributes.size(); ++a) {
-    if (!(targets.attributes[a] > 0)) return InvalidArgument(mesh.attributes[a].name + ": its target must be above 0");
+    if (!(targets.attributes[a] > 0) || (!targets.everywhere.empty() && !(targets.everywhere[a] > 0))) return InvalidArgument(mesh.attributes[a].name + ": its target must be above 0");
   }
   return Status();
 }
@@ -143,7 +167,7 @@ Status CheckTargets(const AttributedMesh& mesh, const ErrorTargets& targets) {
 }  // namespace
 
 ErrorTargets TargetsFor(const AttributedMesh& mesh, double distance, double texels, double degrees) {
-  ErrorTargets targets{distance, {}};
+  ErrorTargets targets{distance, {}, {}};
   for (const MeshAttribute& attribute : mesh.attributes) {
     switch (attribute.kind) {
       case AttributeKind::kTextureCoordinates:
@@ -167,7 +191,7 @@ ErrorTargets TargetsFor(const AttributedMesh& mesh, double distance, double texe
 
 double WorstRatio(const SurfaceErrors& errors, const ErrorTargets& targets) {
   double worst = errors.distance / targets.distance;
-  for (size_t a = 0; a < targets.attributes.size(); ++a) worst = std::max(worst, errors.attributes[a].rms_99 / targets.attributes[a]);
+  for (size_t a = 0; a < targets.attributes.size(); ++a) worst = std::max(worst, AttributeRatio(errors, targets, a));
   return worst;
 }
 
@@ -192,25 +216,24 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
                                              const SimplifyToErrorsOptions& options) {
   LACERTA_RETURN_IF_ERROR(CheckTargets(original, targets));
   const Search search(original, meter, targets, options);
-  std::vector<double> weights = search.FirstWeights();
+  std::vector<double> weights = search.FirstWeights(), best_weights;
   std::optional<Trial> best;
+  double guess = 0.3 * static_cast<double>(original.surface.triangles.size());
   for (int i = 0; i < std::max(options.num_weightings, 1); ++i) {
     const AttributedSimplification sequence(original, weights);
-    LACERTA_ASSIGN_OR_RETURN(std::optional<Trial> trial, search.Smallest(sequence));
+    LACERTA_ASSIGN_OR_RETURN(std::optional<Trial> trial, search.Smallest(sequence, guess));
     if (!trial) break;
+    guess = static_cast<double>(trial->mesh.surface.triangles.size());
+    const std::vector<double> tried = weights;
     search.Reweight(trial->errors, &weights);
-    // Few samples may have been too kind: what counts is measured with more, and given more triangles until it holds.
-    for (double margin = 1;; margin *= 1.02) {
-      const auto wanted = static_cast<double>(trial->mesh.surface.triangles.size()) * (margin == 1 ? 1 : std::max(1.01, trial->ratio * 1.01));
-      const bool is_last = wanted >= sequence.num_input_triangles();
-      if (margin > 1) trial->mesh = search.Fitted(sequence, static_cast<uint32_t>(wanted));
-      LACERTA_ASSIGN_OR_RETURN(trial, search.Measured(std::move(trial->mesh), options.num_samples));
-      if (trial->ratio <= 1 || is_last) break;
-    }
-    if (!best || (trial->ratio <= 1 && trial->mesh.surface.triangles.size() < best->mesh.surface.triangles.size())) best = std::move(trial);
+    if (best && trial->mesh.surface.triangles.size() >= best->mesh.surface.triangles.size()) continue;
+    best = std::move(trial);
+    best_weights = tried;
   }
   if (!best) {
     LACERTA_ASSIGN_OR_RETURN(best, search.Measured(original, options.num_samples));
+  } else {
+    LACERTA_RETURN_IF_ERROR(search.Confirm(best_weights, &*best));
   }
   return SimplifiedSurface{std::move(best->mesh), std::move(best->errors), best->ratio <= 1};
 }

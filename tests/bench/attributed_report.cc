@@ -1,9 +1,11 @@
 // Simplifies the surfaces of glTF files to errors of positions, texture coordinates and normals, and prints what remains as one line of
-// JSON for each mesh: attributed_report [--psnr DB] [--texels N] [--degrees N] FILE...
+// JSON for each mesh: attributed_report [--psnr DB] [--texels N] [--degrees N] [--all-degrees N] FILE...
+// --all-degrees bounds normals and tangents over the whole surface, the others bound 99 % of it.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -14,7 +16,7 @@ namespace lacerta {
 namespace {
 
 struct Targets {
-  double psnr = 70, texels = 1, degrees = 2;
+  double psnr = 70, texels = 1, degrees = 2, all_degrees = std::numeric_limits<double>::infinity();
 };
 
 double Seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -31,7 +33,11 @@ size_t CountVertices(const AttributedMesh& mesh) {
 Status Report(const NamedSurface& surface, const Targets& wanted) {
   const AttributedMesh& mesh = surface.mesh;
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(mesh));
-  const ErrorTargets targets = TargetsFor(mesh, DistanceOfPsnr(wanted.psnr, meter.diagonal()), wanted.texels, wanted.degrees);
+  ErrorTargets targets = TargetsFor(mesh, DistanceOfPsnr(wanted.psnr, meter.diagonal()), wanted.texels, wanted.degrees);
+  for (const MeshAttribute& attribute : mesh.attributes) {
+    const bool is_direction = attribute.kind == AttributeKind::kNormal || attribute.kind == AttributeKind::kTangent;
+    targets.everywhere.push_back(is_direction ? wanted.all_degrees : std::numeric_limits<double>::infinity());
+  }
   const double start = Seconds();
   LACERTA_ASSIGN_OR_RETURN(const SimplifiedSurface simplified, SimplifyToErrors(mesh, meter, targets));
   const double seconds = Seconds() - start;
@@ -62,8 +68,9 @@ int main(int argc, char** argv) {
     const std::string argument = argv[i];
     double* number = argument == "--psnr"      ? &targets.psnr
                      : argument == "--texels"  ? &targets.texels
-                     : argument == "--degrees" ? &targets.degrees
-                                               : nullptr;
+                     : argument == "--degrees"     ? &targets.degrees
+                     : argument == "--all-degrees" ? &targets.all_degrees
+                                                   : nullptr;
     if (number != nullptr && i + 1 < argc) {
       *number = std::atof(argv[++i]);
       continue;
