@@ -414,7 +414,7 @@ void AttributedSimplifier::Run() {
     rings_.Collect(removed, dead_, &corners_v_);
     GatherNodes(kept, removed);
     SumNodes();
-    const Vec3d position = freedom_[kept] == VertexFreedom::kFixed ? positions_[kept] : Place(kept, removed).position;
+    const Vec3d position = Place(kept, removed).position;
     FindValues(position);
     if (!KeepsTopology(kept, removed) || AnyTurnsOver(kept, removed, corners_u_, position) ||
         AnyTurnsOver(removed, kept, corners_v_, position) || AnyTextureTurnsOver(removed, corners_u_) ||

@@ -16,8 +16,8 @@ class AttributedSimplification {
   // input: one that CheckAttributedMesh accepts; copied. weights: for each attribute, the distance relative to the bounding box's
   // diagonal that is as bad an error as one unit of the attribute; >= 0.
   //
-  // Curves (seams, borders of groups, open borders; wedge_mesh.h) stay what they are: a vertex on one moves and goes only along it,
-  // and where curves end or cross it stands still. A vertex that remains goes to where the errors are least, with the values that
+  // Curves (seams, borders of groups, open borders; wedge_mesh.h) stay what they are: a vertex on one comes together only with its
+  // neighbors along it, and none closes or vanishes; where the surface had to be cut, vertices stand still. A vertex that remains goes to where the errors are least, with the values that
   // are best there; a collapse that turns a triangle over, in space or in the texture, is not made, nor one that changes the topology.
   // Deterministic; O(n log n).
   AttributedSimplification(const AttributedMesh& input, const std::vector<double>& weights);

@@ -91,7 +91,7 @@ void FindCurves(const AttributedMesh& input, WedgeMesh* mesh) {
     mesh->freedom.push_back(is_cut                ? VertexFreedom::kFixed
                             : num_curves[v] == 0  ? VertexFreedom::kSurface
                             : num_curves[v] == 2  ? VertexFreedom::kCurve
-                                                  : VertexFreedom::kFixed);
+                                                  : VertexFreedom::kJunction);
   }
 }
 

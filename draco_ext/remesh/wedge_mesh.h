@@ -12,9 +12,10 @@ namespace lacerta {
 // What may move at a vertex. Curves are open borders, borders of groups, edges whose triangles look opposite ways in the input, and
 // seams of any attribute.
 enum class VertexFreedom : uint8_t {
-  kSurface,  // no curve meets here
-  kCurve,    // two curve edges
-  kFixed,    // where curves end or cross, and where the surface was cut to be a manifold: both sides keep their points
+  kSurface,   // no curve meets here
+  kCurve,     // two curve edges
+  kJunction,  // where curves end or cross: stays one
+  kFixed,     // where the surface was cut to be a manifold: both sides keep their points
 };
 
 // The values of one attribute, as nodes: corners around a vertex that have the same value are one node.

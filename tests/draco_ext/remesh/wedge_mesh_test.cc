@@ -21,16 +21,16 @@ AttributedMesh Plain(const TriangleMesh& mesh) { return WeldSoups({{mesh.positio
 
 TEST(WedgeMeshTest, TheSeamOfACylinderIsACurveBetweenItsBorders) {
   const WedgeMesh mesh = MakeWedgeMesh(WeldSoups({shapes::Cylinder(20, 6)}).value());
-  EXPECT_EQ(Count(mesh, VertexFreedom::kFixed), 2u);       // where the seam meets the two borders
+  EXPECT_EQ(Count(mesh, VertexFreedom::kJunction), 2u);    // where the seam meets the two borders
   EXPECT_EQ(Count(mesh, VertexFreedom::kCurve), 2u * 19 + 5);
   EXPECT_EQ(Count(mesh, VertexFreedom::kSurface), 19u * 5);
   EXPECT_EQ(mesh.attributes[0].values.size(), 21u * 7);    // the texture has two values along the seam,
   EXPECT_EQ(mesh.attributes[1].values.size(), 20u * 7);    // the normal one
 }
 
-TEST(WedgeMeshTest, TheEdgesOfABoxAreCurvesAndItsCornersFixed) {
+TEST(WedgeMeshTest, TheEdgesOfABoxAreCurvesAndItsCornersJunctions) {
   const WedgeMesh mesh = MakeWedgeMesh(WeldSoups({shapes::TexturedBox(4)}).value());
-  EXPECT_EQ(Count(mesh, VertexFreedom::kFixed), 8u);
+  EXPECT_EQ(Count(mesh, VertexFreedom::kJunction), 8u);
   EXPECT_EQ(Count(mesh, VertexFreedom::kCurve), 12u * 3);
   EXPECT_EQ(Count(mesh, VertexFreedom::kSurface), 6u * 9);
 }
