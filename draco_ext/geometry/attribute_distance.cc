@@ -50,11 +50,14 @@ double ErrorBetween(const MeshAttribute& attribute, double texture_size, const d
   return std::sqrt(sum) * (attribute.kind == AttributeKind::kTextureCoordinates ? texture_size : 1.0);
 }
 
-// Errors at the samples of `from`: of attribute a at a * num_samples.
-std::vector<float> ErrorsAtSamples(const GroupSurface& from, const GroupSurface& to, double diagonal,
-                                   const AttributeDistanceOptions& options) {
+struct SampledErrors {
+  std::vector<float> errors;    // of attribute a at a * num_samples
+  std::vector<uint8_t> turned;  // 1: all faces near look away
+};
+
+SampledErrors ErrorsAtSamples(const GroupSurface& from, const GroupSurface& to, double diagonal, const AttributeDistanceOptions& options) {
   const std::vector<MeshAttribute>&from_attributes = from.mesh().attributes, &to_attributes = to.mesh().attributes;
-  std::vector<float> errors(from_attributes.size() * options.num_samples, kAbsent);
+  SampledErrors result{std::vector<float>(from_attributes.size() * options.num_samples, kAbsent), std::vector<uint8_t>(options.num_samples, 0)};
   uint32_t most_components = 0;
   for (const MeshAttribute& attribute : from_attributes) most_components = std::max(most_components, attribute.components);
   const auto measure_block = [&](uint64_t block) {
@@ -67,7 +70,8 @@ std::vector<float> ErrorsAtSamples(const GroupSurface& from, const GroupSurface&
       const SurfaceSampler::Point sample = sampler.Sample(i);
       const uint32_t face = from.face_of_slot(sample.slot);
       const GroupSurface::Point here{face, {static_cast<float>(1 - sample.u - sample.v), static_cast<float>(sample.u), static_cast<float>(sample.v)}, 0};
-      to.PointsNear(from.mesh().GroupOf(face), sample.position, from.NormalOf(face), options.seam_distance * diagonal, &hint, &near);
+      const bool agrees = to.PointsNear(from.mesh().GroupOf(face), sample.position, from.NormalOf(face), options.seam_distance * diagonal, &hint, &near);
+      result.turned[i] = !agrees;
       for (size_t a = 0; a < from_attributes.size(); ++a) {
         if (from_attributes[a].corners[face][0] == MeshAttribute::kNoValue || near.empty()) continue;
         if (to_attributes[a].corners[near[0].face][0] == MeshAttribute::kNoValue) continue;
@@ -79,7 +83,7 @@ std::vector<float> ErrorsAtSamples(const GroupSurface& from, const GroupSurface&
           InterpolateValue(to_attributes[a], side, other.data());
           least = std::min(least, ErrorBetween(from_attributes[a], options.texture_size, value.data(), other.data()));
         }
-        errors[a * options.num_samples + i] = static_cast<float>(least);
+        result.errors[a * options.num_samples + i] = static_cast<float>(least);
       }
     }
   };
@@ -87,7 +91,7 @@ std::vector<float> ErrorsAtSamples(const GroupSurface& from, const GroupSurface&
                     [&](const tbb::blocked_range<uint64_t>& range) {
                       for (uint64_t block = range.begin(); block != range.end(); ++block) measure_block(block);
                     });
-  return errors;
+  return result;
 }
 
 AttributeError Summarize(std::vector<float> errors) {
@@ -109,11 +113,12 @@ AttributeError Summarize(std::vector<float> errors) {
 }
 
 std::vector<AttributeError> MeasureOneSide(const GroupSurface& from, const GroupSurface& to, double diagonal,
-                                           const AttributeDistanceOptions& options) {
-  const std::vector<float> errors = ErrorsAtSamples(from, to, diagonal, options);
+                                           const AttributeDistanceOptions& options, double* turned) {
+  const SampledErrors samples = ErrorsAtSamples(from, to, diagonal, options);
+  *turned = static_cast<double>(std::count(samples.turned.begin(), samples.turned.end(), 1)) / static_cast<double>(options.num_samples);
   std::vector<AttributeError> result;
   for (size_t a = 0; a < from.mesh().attributes.size(); ++a) {
-    const auto begin = errors.begin() + static_cast<std::ptrdiff_t>(a * options.num_samples);
+    const auto begin = samples.errors.begin() + static_cast<std::ptrdiff_t>(a * options.num_samples);
     result.push_back(Summarize({begin, begin + static_cast<std::ptrdiff_t>(options.num_samples)}));
   }
   return result;
@@ -176,8 +181,10 @@ StatusOr<AttributeDistance> AttributeDistanceMeter::Measure(const AttributedMesh
   const GroupSurface other(mesh);
   LACERTA_RETURN_IF_ERROR(CheckArea(mesh, other).WithContext("measured mesh"));
   LACERTA_RETURN_IF_ERROR(CheckMatch(original_->surface, other));
-  return AttributeDistance{MeasureOneSide(original_->surface, other, original_->diagonal, options),
-                           MeasureOneSide(other, original_->surface, original_->diagonal, options)};
+  AttributeDistance result;
+  result.forward = MeasureOneSide(original_->surface, other, original_->diagonal, options, &result.forward_turned);
+  result.backward = MeasureOneSide(other, original_->surface, original_->diagonal, options, &result.backward_turned);
+  return result;
 }
 
 }  // namespace lacerta

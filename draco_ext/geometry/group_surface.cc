@@ -76,15 +76,15 @@ Vec3d GroupSurface::NormalOf(uint32_t face) const {
   return Normalized(Cross(Vec3Cast<double>(mesh_.surface.positions[t[1]]) - a, Vec3Cast<double>(mesh_.surface.positions[t[2]]) - a));
 }
 
-void GroupSurface::PointsNear(uint32_t group, const Vec3f& p, const Vec3d& normal, double beyond, uint32_t* hint,
+bool GroupSurface::PointsNear(uint32_t group, const Vec3f& p, const Vec3d& normal, double beyond, uint32_t* hint,
                               std::vector<Point>* points) const {
   points->clear();
   const auto found = groups_.find(group);
-  if (found == groups_.end()) return;
+  if (found == groups_.end()) return false;
   const Group& part = found->second;
   const bool hint_is_here = *hint < place_.size() && mesh_.GroupOf(*hint) == group;
   const ClosestPointResult closest = part.tree.ClosestPointNear(p, hint_is_here ? place_[*hint] : SurfacePoint::kNone);
-  if (closest.point.face == SurfacePoint::kNone) return;
+  if (closest.point.face == SurfacePoint::kNone) return false;
   const auto add = [&](const ClosestPointResult& result) {
     points->push_back({part.faces[result.point.face], result.point.barycentric, result.squared_distance});
   };
@@ -101,7 +101,9 @@ void GroupSurface::PointsNear(uint32_t group, const Vec3f& p, const Vec3d& norma
   }
   const auto first_other = std::stable_partition(points->begin(), points->end(),
                                                  [&](const Point& point) { return Dot(NormalOf(point.face), normal) > 0; });
-  if (first_other != points->begin()) points->erase(first_other, points->end());
+  if (first_other == points->begin()) return false;
+  points->erase(first_other, points->end());
+  return true;
 }
 
 void GroupSurface::KeepOnePerSide(const MeshAttribute& attribute, std::vector<Point>* points) const {

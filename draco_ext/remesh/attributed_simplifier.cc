@@ -17,20 +17,6 @@ constexpr double kCurveWeight = 0.3;
 
 }  // namespace
 
-AttributedSimplifier::Channel::Channel(const MeshAttribute& attribute, const AttributeNodes& start, double weight, uint32_t num_vertices)
-    : is_texture(attribute.kind == AttributeKind::kTextureCoordinates && attribute.components == 2),
-      scale(weight),
-      nodes(start.nodes),
-      node_of_vertex(num_vertices, kNone),
-      quadrics(attribute.components, start.values.size()) {
-  values.reserve(start.values.size() * attribute.components);
-  for (const uint32_t row : start.values) {
-    for (uint32_t i = 0; i < attribute.components; ++i) {
-      values.push_back(weight * static_cast<double>(attribute.values[size_t{row} * attribute.components + i]));
-    }
-  }
-}
-
 AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const WedgeMesh& start, const std::vector<double>& weights,
                                            AttributedSimplification* sequence)
     : input_(input),
@@ -41,6 +27,7 @@ AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const We
       curve_edges_(start.curve_edges),
       freedom_(start.freedom),
       quadrics_(start.num_vertices()),
+      normal_sums_(start.num_vertices()),
       rings_(start.num_vertices(), triangles_),
       version_(start.num_vertices(), 0),
       mark_(start.num_vertices(), 0),
@@ -69,8 +56,12 @@ void AttributedSimplifier::AddQuadrics() {
     const Triangle& t = triangles_[f];
     const std::array<Vec3d, 3> p = {positions_[t[0]], positions_[t[1]], positions_[t[2]]};
     const Quadric q = Quadric::OfTriangle(p[0], p[1], p[2]);
-    for (const uint32_t v : t) quadrics_[v] += q;
-    area += Norm(Cross(p[1] - p[0], p[2] - p[0])) / 2;
+    const Vec3d normal = Cross(p[1] - p[0], p[2] - p[0]);
+    for (const uint32_t v : t) {
+      quadrics_[v] += q;
+      normal_sums_[v] += normal;
+    }
+    area += Norm(normal) / 2;
     for (Channel& channel : channels_) {
       const Triangle& nodes = channel.nodes[f];
       if (nodes[0] == kNone) continue;
@@ -187,94 +178,6 @@ bool AttributedSimplifier::KeepsTopology(uint32_t u, uint32_t v) {
                       [&](uint32_t corner) { return !Has(corner / 3, v) && has_both_across(corner, u); });
 }
 
-// Which nodes become one: those at both ends of the edge in a triangle that goes. All other nodes at the two vertices are a group alone.
-void AttributedSimplifier::GatherNodes(uint32_t u, uint32_t v) {
-  groups_.clear();
-  group_members_.clear();
-  const bool both_free = freedom_[u] == VertexFreedom::kSurface && freedom_[v] == VertexFreedom::kSurface;
-  for (uint32_t c = 0; c < channels_.size(); ++c) {
-    const Channel& channel = channels_[c];
-    if (both_free) {
-      if (channel.node_of_vertex[u] == kNone) continue;
-      groups_.push_back({c, static_cast<uint32_t>(group_members_.size()), 2, 0});
-      group_members_.insert(group_members_.end(), {channel.node_of_vertex[u], channel.node_of_vertex[v]});
-      continue;
-    }
-    std::vector<std::array<uint32_t, 2>> nodes;  // and the number of its group
-    const auto number_of = [&](uint32_t node) {
-      for (const auto& [known, number] : nodes) {
-        if (known == node) return number;
-      }
-      nodes.push_back({node, static_cast<uint32_t>(nodes.size())});
-      return nodes.back()[1];
-    };
-    for (const std::vector<uint32_t>* corners : {&corners_u_, &corners_v_}) {
-      for (const uint32_t corner : *corners) {
-        if (VertexOf(channel.nodes, corner) != kNone) number_of(VertexOf(channel.nodes, corner));
-      }
-    }
-    for (const uint32_t corner : corners_u_) {
-      if (!Has(corner / 3, v) || VertexOf(channel.nodes, corner) == kNone) continue;
-      const uint32_t other = VertexOf(triangles_, NextCorner(corner)) == v ? NextCorner(corner) : PreviousCorner(corner);
-      const uint32_t a = number_of(VertexOf(channel.nodes, corner)), b = number_of(VertexOf(channel.nodes, other));
-      for (auto& [node, number] : nodes) number = number == b ? a : number;
-    }
-    std::stable_sort(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) { return a[1] < b[1]; });
-    for (size_t i = 0; i < nodes.size(); ++i) {
-      if (i == 0 || nodes[i][1] != nodes[i - 1][1]) groups_.push_back({c, static_cast<uint32_t>(group_members_.size()), 0, 0});
-      ++groups_.back().count;
-      group_members_.push_back(nodes[i][0]);
-    }
-  }
-}
-
-void AttributedSimplifier::SumNodes() {
-  sums_.clear();
-  for (const NodeGroup& group : groups_) {
-    const AttributeQuadrics& quadrics = channels_[group.channel].quadrics;
-    const double* first = quadrics.row(group_members_[group.first]);
-    const size_t begin = sums_.size();
-    sums_.insert(sums_.end(), first, first + quadrics.row_size());
-    for (uint32_t i = 1; i < group.count; ++i) {
-      const double* row = quadrics.row(group_members_[group.first + i]);
-      for (size_t k = 0; k < quadrics.row_size(); ++k) sums_[begin + k] += row[k];
-    }
-  }
-}
-
-Placement AttributedSimplifier::Place(uint32_t u, uint32_t v) {
-  Quadric q = quadrics_[u];
-  q += quadrics_[v];
-  const double* sum = sums_.data();
-  for (const NodeGroup& group : groups_) {
-    channels_[group.channel].quadrics.AddReduced(sum, &q);
-    sum += channels_[group.channel].quadrics.row_size();
-  }
-  Placement result;
-  if (freedom_[u] == VertexFreedom::kFixed || freedom_[v] == VertexFreedom::kFixed) {
-    result.position = positions_[freedom_[u] == VertexFreedom::kFixed ? u : v];
-    result.cost = q.Evaluate(result.position);
-  } else {
-    result = PlaceBetween(q, positions_[u], positions_[v]);
-  }
-  result.cost += edge_weight_ * SquaredNorm(positions_[u] - positions_[v]);
-  return result;
-}
-
-void AttributedSimplifier::FindValues(const Vec3d& position) {
-  new_values_.clear();
-  const double* sum = sums_.data();
-  for (NodeGroup& group : groups_) {
-    const Channel& channel = channels_[group.channel];
-    const uint32_t components = channel.quadrics.components();
-    group.value = new_values_.size();
-    const double* old = &channel.values[size_t{group_members_[group.first]} * components];
-    new_values_.insert(new_values_.end(), old, old + components);
-    channel.quadrics.BestValue(sum, position, &new_values_[group.value]);
-    sum += channel.quadrics.row_size();
-  }
-}
-
 bool AttributedSimplifier::AnyTurnsOver(uint32_t moved, uint32_t other, const std::vector<uint32_t>& corners, const Vec3d& to) const {
   return std::any_of(corners.begin(), corners.end(), [&](uint32_t corner) {
     if (Has(corner / 3, other)) return false;
@@ -283,21 +186,22 @@ bool AttributedSimplifier::AnyTurnsOver(uint32_t moved, uint32_t other, const st
   });
 }
 
-// Whether a triangle at one of these corners, which get their values from new_values_, would be mirrored in a texture.
-bool AttributedSimplifier::AnyTextureTurnsOver(uint32_t other, const std::vector<uint32_t>& corners) const {
-  for (const NodeGroup& group : groups_) {
-    const Channel& channel = channels_[group.channel];
-    if (!channel.is_texture) continue;
-    const double* value = &new_values_[group.value];
-    for (const uint32_t corner : corners) {
-      const uint32_t node = VertexOf(channel.nodes, corner);
-      const auto first = group_members_.begin() + group.first;
-      if (Has(corner / 3, other) || std::find(first, first + group.count, node) == first + group.count) continue;
-      const double* a = &channel.values[2 * size_t{VertexOf(channel.nodes, NextCorner(corner))}];
-      const double* b = &channel.values[2 * size_t{VertexOf(channel.nodes, PreviousCorner(corner))}];
-      const auto doubled_area = [&](const double* c) { return (a[0] - c[0]) * (b[1] - c[1]) - (a[1] - c[1]) * (b[0] - c[0]); };
-      const double before = doubled_area(&channel.values[2 * size_t{node}]), after = doubled_area(value);
-      if (before != 0 && before * after <= 0) return true;
+// Whether a triangle would look away from what the surface was at one of its corners: collapse by collapse triangles may turn
+// further than AnyTurnsOver allows.
+bool AttributedSimplifier::AnyLooksAway(uint32_t kept, uint32_t removed, const Vec3d& to) const {
+  const Vec3d sum = normal_sums_[kept] + normal_sums_[removed];
+  for (const std::vector<uint32_t>* corners : {&corners_u_, &corners_v_}) {
+    for (const uint32_t corner : *corners) {
+      if (Has(corner / 3, kept) && Has(corner / 3, removed)) continue;
+      const uint32_t moved = VertexOf(triangles_, corner);
+      const uint32_t b = VertexOf(triangles_, NextCorner(corner)), c = VertexOf(triangles_, PreviousCorner(corner));
+      const Vec3d before = Normalized(Cross(positions_[b] - positions_[moved], positions_[c] - positions_[moved]));
+      const Vec3d after = Normalized(Cross(positions_[b] - to, positions_[c] - to));
+      const auto is_away = [&](const Vec3d& old_sum, const Vec3d& new_sum) {
+        const double cosine = Dot(after, Normalized(new_sum));
+        return cosine < 0 && cosine < Dot(before, Normalized(old_sum));
+      };
+      if (is_away(normal_sums_[moved], sum) || is_away(normal_sums_[b], normal_sums_[b]) || is_away(normal_sums_[c], normal_sums_[c])) return true;
     }
   }
   return false;
@@ -332,33 +236,6 @@ void AttributedSimplifier::JoinEdges(uint32_t kept, uint32_t removed) {
   }
 }
 
-void AttributedSimplifier::JoinNodes() {
-  const auto num_collapses = static_cast<uint32_t>(sequence_->collapses_.size());
-  const double* sum = sums_.data();
-  for (const NodeGroup& group : groups_) {
-    Channel& channel = channels_[group.channel];
-    AttributedSimplification::NodeHistory& history = sequence_->histories_[group.channel];
-    const uint32_t components = channel.quadrics.components();
-    const uint32_t kept = group_members_[group.first];
-    for (uint32_t i = 1; i < group.count; ++i) history.merges.push_back({group_members_[group.first + i], kept, num_collapses});
-    std::copy_n(sum, channel.quadrics.row_size(), channel.quadrics.row(kept));
-    std::copy_n(&new_values_[group.value], components, &channel.values[size_t{kept} * components]);
-    history.moves.push_back({kept, num_collapses});
-    for (uint32_t i = 0; i < components; ++i) {
-      const double unit = channel.scale > 0 ? 1 / channel.scale : 0;
-      history.values.push_back(static_cast<float>(new_values_[group.value + i] * unit));
-    }
-    for (const std::vector<uint32_t>* corners : {&corners_u_, &corners_v_}) {
-      for (const uint32_t corner : *corners) {
-        uint32_t& node = channel.nodes[corner / 3][corner % 3];
-        for (uint32_t i = 1; i < group.count; ++i) node = node == group_members_[group.first + i] ? kept : node;
-        if (!dead_[corner / 3]) channel.node_of_vertex[triangles_[corner / 3][corner % 3]] = node;
-      }
-    }
-    sum += channel.quadrics.row_size();
-  }
-}
-
 // corners_u_: of `kept`, corners_v_: of `removed`.
 void AttributedSimplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position) {
   JoinEdges(kept, removed);
@@ -376,6 +253,7 @@ void AttributedSimplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d
   rings_.Join(kept, removed);
   positions_[kept] = position;
   quadrics_[kept] += quadrics_[removed];
+  normal_sums_[kept] += normal_sums_[removed];
   freedom_[kept] = std::max(freedom_[kept], freedom_[removed]);
   ++version_[kept];
   ++version_[removed];
@@ -417,7 +295,7 @@ void AttributedSimplifier::Run() {
     const Vec3d position = Place(kept, removed).position;
     FindValues(position);
     if (!KeepsTopology(kept, removed) || AnyTurnsOver(kept, removed, corners_u_, position) ||
-        AnyTurnsOver(removed, kept, corners_v_, position) || AnyTextureTurnsOver(removed, corners_u_) ||
+        AnyTurnsOver(removed, kept, corners_v_, position) || AnyLooksAway(kept, removed, position) || AnyTextureTurnsOver(removed, corners_u_) ||
         AnyTextureTurnsOver(kept, corners_v_)) {
       blocked_.push_back(candidate);
       continue;

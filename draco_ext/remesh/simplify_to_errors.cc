@@ -207,7 +207,7 @@ StatusOr<SurfaceErrors> SurfaceErrorMeter::Measure(const AttributedMesh& mesh, u
   options.num_samples = num_samples;
   options.texture_size = texture_size_;
   LACERTA_ASSIGN_OR_RETURN(const AttributeDistance attributes, attributes_.Measure(mesh, options));
-  SurfaceErrors errors{distance.Rms(), {}};
+  SurfaceErrors errors{distance.Rms(), {}, attributes.backward_turned};
   for (size_t a = 0; a < attributes.forward.size(); ++a) errors.attributes.push_back(attributes.Worst(a));
   return errors;
 }

@@ -16,6 +16,7 @@ namespace lacerta {
 struct SurfaceErrors {
   double distance = 0;                     // two-sided RMS distance d_S, model units
   std::vector<AttributeError> attributes;  // the worse of both directions, for each attribute of the original
+  double turned = 0;                       // share of the surface's area that looks away from all of the original near it
 };
 
 // What is allowed. All > 0; infinity: anything will do.

@@ -42,9 +42,9 @@ Status Report(const NamedSurface& surface, const Targets& wanted) {
   LACERTA_ASSIGN_OR_RETURN(const SimplifiedSurface simplified, SimplifyToErrors(mesh, meter, targets));
   const double seconds = Seconds() - start;
   const size_t before = CountVertices(mesh), after = CountVertices(simplified.mesh);
-  std::printf("{\"mesh\": \"%s\", \"vertices\": %zu, \"left\": %zu, \"share\": %.3f, \"triangles\": %zu, \"triangles_left\": %zu, \"psnr\": %.2f",
+  std::printf("{\"mesh\": \"%s\", \"vertices\": %zu, \"left\": %zu, \"share\": %.3f, \"triangles\": %zu, \"triangles_left\": %zu, \"psnr\": %.2f, \"turned\": %.5f",
               surface.name.c_str(), before, after, static_cast<double>(after) / static_cast<double>(before), mesh.surface.triangles.size(),
-              simplified.mesh.surface.triangles.size(), Psnr(simplified.errors.distance, meter.diagonal()));
+              simplified.mesh.surface.triangles.size(), Psnr(simplified.errors.distance, meter.diagonal()), simplified.errors.turned);
   std::string limit = "POSITION";
   double worst = simplified.errors.distance / targets.distance;
   for (size_t a = 0; a < mesh.attributes.size(); ++a) {

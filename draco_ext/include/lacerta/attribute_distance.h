@@ -33,10 +33,11 @@ struct AttributeError {
   double share = 0;  // of the surface's area that has the attribute; the figures above are over that
 };
 
-// For each attribute of the original, in their order.
 struct AttributeDistance {
-  std::vector<AttributeError> forward;   // from the original to the other surface
-  std::vector<AttributeError> backward;  // from the other surface to the original
+  // For each attribute of the original, in their order: from the original to the other surface, and from there to the original.
+  std::vector<AttributeError> forward, backward;
+  // Share of the area of the original, and of the other surface, near which all faces of the other one look away.
+  double forward_turned = 0, backward_turned = 0;
 
   AttributeError Worst(size_t attribute) const;  // of the two directions, figure by figure
 };

@@ -157,6 +157,17 @@ TEST(AttributeDistanceTest, BackAndFrontOfASheetAreToldApart) {
   const AttributedMesh mesh = Weld({soup});
   EXPECT_LT(Distance(mesh, mesh).Worst(kTexture).max, 0.01);
   EXPECT_LT(Distance(mesh, mesh).Worst(kNormal).max, 0.01);
+  EXPECT_EQ(Distance(mesh, mesh).backward_turned, 0);
+}
+
+TEST(AttributeDistanceTest, AreaThatLooksAwayIsCounted) {
+  const VertexSoup soup = shapes::TexturedGrid(10, 10);
+  VertexSoup turned = soup;
+  for (size_t f = 0; f < 20; ++f) std::swap(turned.triangles[f][1], turned.triangles[f][2]);  // the first of ten rows
+  const AttributeDistance distance = Distance(Weld({soup}), Weld({turned}));
+  // What lies under the row and within 0.001 diagonals of the next one finds a face there.
+  EXPECT_NEAR(distance.forward_turned, 0.1 - 1e-3 * std::sqrt(2.0), 2e-4);
+  EXPECT_NEAR(distance.backward_turned, 0.1, 2e-4);
 }
 
 TEST(AttributeDistanceTest, GroupsAreComparedWithThemselves) {
