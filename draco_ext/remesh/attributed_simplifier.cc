@@ -27,7 +27,6 @@ AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const We
       curve_edges_(start.curve_edges),
       freedom_(start.freedom),
       quadrics_(start.num_vertices()),
-      normal_sums_(start.num_vertices()),
       rings_(start.num_vertices(), triangles_),
       version_(start.num_vertices(), 0),
       mark_(start.num_vertices(), 0),
@@ -56,12 +55,8 @@ void AttributedSimplifier::AddQuadrics() {
     const Triangle& t = triangles_[f];
     const std::array<Vec3d, 3> p = {positions_[t[0]], positions_[t[1]], positions_[t[2]]};
     const Quadric q = Quadric::OfTriangle(p[0], p[1], p[2]);
-    const Vec3d normal = Cross(p[1] - p[0], p[2] - p[0]);
-    for (const uint32_t v : t) {
-      quadrics_[v] += q;
-      normal_sums_[v] += normal;
-    }
-    area += Norm(normal) / 2;
+    for (const uint32_t v : t) quadrics_[v] += q;
+    area += Norm(Cross(p[1] - p[0], p[2] - p[0])) / 2;
     for (Channel& channel : channels_) {
       const Triangle& nodes = channel.nodes[f];
       if (nodes[0] == kNone) continue;
@@ -186,27 +181,6 @@ bool AttributedSimplifier::AnyTurnsOver(uint32_t moved, uint32_t other, const st
   });
 }
 
-// Whether a triangle would look away from what the surface was at one of its corners: collapse by collapse triangles may turn
-// further than AnyTurnsOver allows.
-bool AttributedSimplifier::AnyLooksAway(uint32_t kept, uint32_t removed, const Vec3d& to) const {
-  const Vec3d sum = normal_sums_[kept] + normal_sums_[removed];
-  for (const std::vector<uint32_t>* corners : {&corners_u_, &corners_v_}) {
-    for (const uint32_t corner : *corners) {
-      if (Has(corner / 3, kept) && Has(corner / 3, removed)) continue;
-      const uint32_t moved = VertexOf(triangles_, corner);
-      const uint32_t b = VertexOf(triangles_, NextCorner(corner)), c = VertexOf(triangles_, PreviousCorner(corner));
-      const Vec3d before = Normalized(Cross(positions_[b] - positions_[moved], positions_[c] - positions_[moved]));
-      const Vec3d after = Normalized(Cross(positions_[b] - to, positions_[c] - to));
-      const auto is_away = [&](const Vec3d& old_sum, const Vec3d& new_sum) {
-        const double cosine = Dot(after, Normalized(new_sum));
-        return cosine < 0 && cosine < Dot(before, Normalized(old_sum));
-      };
-      if (is_away(normal_sums_[moved], sum) || is_away(normal_sums_[b], normal_sums_[b]) || is_away(normal_sums_[c], normal_sums_[c])) return true;
-    }
-  }
-  return false;
-}
-
 // Of each triangle that goes, the two other edges become one: on a curve where either was.
 void AttributedSimplifier::JoinEdges(uint32_t kept, uint32_t removed) {
   const auto& corners_removed = corners_v_;
@@ -253,7 +227,6 @@ void AttributedSimplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d
   rings_.Join(kept, removed);
   positions_[kept] = position;
   quadrics_[kept] += quadrics_[removed];
-  normal_sums_[kept] += normal_sums_[removed];
   freedom_[kept] = std::max(freedom_[kept], freedom_[removed]);
   ++version_[kept];
   ++version_[removed];
@@ -295,7 +268,7 @@ void AttributedSimplifier::Run() {
     const Vec3d position = Place(kept, removed).position;
     FindValues(position);
     if (!KeepsTopology(kept, removed) || AnyTurnsOver(kept, removed, corners_u_, position) ||
-        AnyTurnsOver(removed, kept, corners_v_, position) || AnyLooksAway(kept, removed, position) || AnyTextureTurnsOver(removed, corners_u_) ||
+        AnyTurnsOver(removed, kept, corners_v_, position) || AnyTextureTurnsOver(removed, corners_u_) ||
         AnyTextureTurnsOver(kept, corners_v_)) {
       blocked_.push_back(candidate);
       continue;

@@ -64,7 +64,6 @@ class AttributedSimplifier {
   Placement Place(uint32_t u, uint32_t v);
   void FindValues(const Vec3d& position);
   bool AnyTurnsOver(uint32_t moved, uint32_t other, const std::vector<uint32_t>& corners, const Vec3d& to) const;
-  bool AnyLooksAway(uint32_t kept, uint32_t removed, const Vec3d& to) const;
   bool AnyTextureTurnsOver(uint32_t other, const std::vector<uint32_t>& corners) const;
   void Collapse(uint32_t kept, uint32_t removed, const Vec3d& position);
   void JoinEdges(uint32_t kept, uint32_t removed);
@@ -88,7 +87,6 @@ class AttributedSimplifier {
   std::vector<uint8_t> dead_, curve_edges_;  // per triangle
   std::vector<VertexFreedom> freedom_;
   std::vector<Quadric> quadrics_;
-  std::vector<Vec3d> normal_sums_;  // per vertex, of the input's triangles that have come together there, by area
   std::vector<Channel> channels_;
   CornerRings rings_;
   std::vector<uint32_t> version_, mark_, valence_;

@@ -100,7 +100,8 @@ class Search {
     if (trial->ratio <= 1) return Status();
     const AttributedSimplification sequence(original_, weights);
     for (double margin = 1.01; trial->ratio > 1; margin *= 1.01) {
-      const double size = static_cast<double>(trial->mesh.surface.triangles.size()) * trial->ratio * margin;
+      const auto triangles = static_cast<double>(trial->mesh.surface.triangles.size());
+      const double size = std::max(triangles * trial->ratio * margin, triangles + 1);
       const uint32_t all = sequence.num_input_triangles();
       const uint32_t wanted = size < all ? static_cast<uint32_t>(size) : all;
       LACERTA_ASSIGN_OR_RETURN(*trial, Measured(Fitted(sequence, wanted), options_.num_samples));
@@ -157,6 +158,7 @@ class Search {
 Status CheckTargets(const AttributedMesh& mesh, const ErrorTargets& targets) {
   if (targets.attributes.size() != mesh.attributes.size()) return InvalidArgument("there is not one target for each attribute");
   if (!targets.everywhere.empty() && targets.everywhere.size() != mesh.attributes.size()) return InvalidArgument("there is not one target everywhere for each attribute");
+  if (!(targets.turned > 0)) return InvalidArgument("the target of the turned area must be above 0");
   if (!(targets.distance > 0)) return InvalidArgument("the target of the distance must be above 0");
   for (size_t a = 0; a < targets.attributes.size(); ++a) {
     if (!(targets.attributes[a] > 0) || (!targets.everywhere.empty() && !(targets.everywhere[a] > 0))) return InvalidArgument(mesh.attributes[a].name + ": its target must be above 0");
@@ -167,7 +169,8 @@ Status CheckTargets(const AttributedMesh& mesh, const ErrorTargets& targets) {
 }  // namespace
 
 ErrorTargets TargetsFor(const AttributedMesh& mesh, double distance, double texels, double degrees) {
-  ErrorTargets targets{distance, {}, {}};
+  ErrorTargets targets;
+  targets.distance = distance;
   for (const MeshAttribute& attribute : mesh.attributes) {
     switch (attribute.kind) {
       case AttributeKind::kTextureCoordinates:
@@ -190,7 +193,7 @@ ErrorTargets TargetsFor(const AttributedMesh& mesh, double distance, double texe
 }
 
 double WorstRatio(const SurfaceErrors& errors, const ErrorTargets& targets) {
-  double worst = errors.distance / targets.distance;
+  double worst = std::max(errors.distance / targets.distance, errors.turned / targets.turned);
   for (size_t a = 0; a < targets.attributes.size(); ++a) worst = std::max(worst, AttributeRatio(errors, targets, a));
   return worst;
 }

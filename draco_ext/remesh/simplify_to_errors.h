@@ -3,6 +3,8 @@
 #define LACERTA_REMESH_SIMPLIFY_TO_ERRORS_H_
 
 #include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "lacerta/attribute_distance.h"
@@ -24,11 +26,12 @@ struct ErrorTargets {
   double distance = 0;
   std::vector<double> attributes;  // bounds of AttributeError::rms_99, in its units
   std::vector<double> everywhere = {};  // bounds of AttributeError::rms; empty: none
+  double turned = std::numeric_limits<double>::infinity();  // bound of SurfaceErrors::turned
 };
 
 // For every texture coordinate `texels` on 99 % of the surface, for normals and tangents `degrees`; joint weights and colors 1/256, all
 // others 1/1000 of their range. `everywhere` stays empty: the last 1 % of the surface, small parts and sharp
-// rims mostly, may be anything; to hold normals there, too, takes up to twice the triangles.
+// rims mostly, may be anything; to hold normals there, too, takes up to twice the triangles. Nor is `turned` bounded.
 ErrorTargets TargetsFor(const AttributedMesh& mesh, double distance, double texels, double degrees);
 
 // The worst error relative to its target: the targets are met where it is at most 1.

@@ -1,5 +1,5 @@
 // Simplifies the surfaces of glTF files to errors of positions, texture coordinates and normals, and prints what remains as one line of
-// JSON for each mesh: attributed_report [--psnr DB] [--texels N] [--degrees N] [--all-degrees N] FILE...
+// JSON for each mesh: attributed_report [--psnr DB] [--texels N] [--degrees N] [--all-degrees N] [--turned SHARE] FILE...
 // --all-degrees bounds normals and tangents over the whole surface, the others bound 99 % of it.
 #include <algorithm>
 #include <chrono>
@@ -16,7 +16,7 @@ namespace lacerta {
 namespace {
 
 struct Targets {
-  double psnr = 70, texels = 1, degrees = 2, all_degrees = std::numeric_limits<double>::infinity();
+  double psnr = 70, texels = 1, degrees = 2, all_degrees = std::numeric_limits<double>::infinity(), turned = all_degrees;
 };
 
 double Seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -38,6 +38,7 @@ Status Report(const NamedSurface& surface, const Targets& wanted) {
     const bool is_direction = attribute.kind == AttributeKind::kNormal || attribute.kind == AttributeKind::kTangent;
     targets.everywhere.push_back(is_direction ? wanted.all_degrees : std::numeric_limits<double>::infinity());
   }
+  targets.turned = wanted.turned;
   const double start = Seconds();
   LACERTA_ASSIGN_OR_RETURN(const SimplifiedSurface simplified, SimplifyToErrors(mesh, meter, targets));
   const double seconds = Seconds() - start;
@@ -70,6 +71,7 @@ int main(int argc, char** argv) {
                      : argument == "--texels"  ? &targets.texels
                      : argument == "--degrees"     ? &targets.degrees
                      : argument == "--all-degrees" ? &targets.all_degrees
+                     : argument == "--turned"      ? &targets.turned
                                                    : nullptr;
     if (number != nullptr && i + 1 < argc) {
       *number = std::atof(argv[++i]);

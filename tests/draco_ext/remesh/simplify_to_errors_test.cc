@@ -49,6 +49,19 @@ TEST(SimplifyToErrorsTest, GoesToTheEndWhereTargetsAllow) {
   EXPECT_EQ(Simplify(mesh, {1e-3, {1, 1}}).mesh.surface.triangles.size(), 12u);
 }
 
+TEST(SimplifyToErrorsTest, TheWorstRatioIsOfAllThatIsBounded) {
+  SurfaceErrors errors;
+  errors.distance = 1;
+  errors.attributes = {{2, 6, 50, 1}};
+  errors.turned = 1e-3;
+  ErrorTargets targets{2, {8}};
+  EXPECT_EQ(WorstRatio(errors, targets), 0.5);
+  targets.everywhere = {8};
+  EXPECT_EQ(WorstRatio(errors, targets), 0.75);
+  targets.turned = 5e-4;
+  EXPECT_EQ(WorstRatio(errors, targets), 2);
+}
+
 TEST(SimplifyToErrorsTest, TargetsAreByKind) {
   VertexSoup soup = shapes::TexturedGrid(2, 2);
   soup.attributes.push_back({"COLOR_0", AttributeKind::kColor, 1, std::vector<float>(9, 0.5f)});
