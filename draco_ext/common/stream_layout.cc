@@ -20,9 +20,9 @@ uint16_t BaseChecksum(const BaseMesh& base) {
   return crc.low16();
 }
 
-uint16_t SegmentChecksum(int level, Span<const uint8_t> payload) {
+uint16_t SegmentChecksum(int what, Span<const uint8_t> payload) {
   Crc32 crc;
-  crc.Add(static_cast<uint8_t>(level));
+  crc.Add(static_cast<uint8_t>(what));
   crc.Add(payload);
   return crc.low16();
 }

@@ -27,7 +27,8 @@ inline constexpr int32_t kMaxLatticeValue = (1 << 24) - 1;  // a binary32 holds 
 // Flags of the refinement header, above the number of levels.
 inline constexpr uint8_t kHasTags = 1 << 4;
 inline constexpr uint8_t kHasBaseStep = 1 << 5;
-inline constexpr uint8_t kUnknownFlags = 0xc0;
+inline constexpr uint8_t kHasLayers = 1 << 6;  // levels come in several segments, which tell what they are
+inline constexpr uint8_t kUnknownFlags = 0x80;
 
 // Flags of a level.
 inline constexpr uint8_t kCodesNormal = 1;
@@ -40,15 +41,26 @@ struct RefinementHeader {
   float base_step = 0.0f;  // 0: the base section tells it
   uint16_t base_checksum = 0;
   std::vector<LevelSteps> steps;  // of levels 1, 2, ...
+  bool has_layers = false;
   Bytes tags;                     // payload of CodeBaseTags (common/base_tags_coding.h); empty: none
 };
+
+// What a segment of a stream with layers holds: level `level` on steps 2^shift times those of the header.
+struct LayerSegment {
+  int level = 1;       // 1..12
+  int shift = 0;       // 0..7
+  bool waits = false;  // to be shown together with the next segment only: alone it would make the mesh worse
+};
+inline constexpr int kMaxLayerShift = 7;
+inline uint8_t LayerSegmentByte(const LayerSegment& s) { return static_cast<uint8_t>(s.level | s.shift << 4 | (s.waits ? 0x80 : 0)); }
+inline LayerSegment LayerSegmentFromByte(uint8_t byte) { return {byte & 15, byte >> 4 & 7, (byte & 0x80) != 0}; }
 
 // Lower half of the CRC-32 over step, lattice values (three per vertex) and triangles (three indices each) as 4-byte little-endian
 // words.
 uint16_t BaseChecksum(const BaseMesh& base);
 
-// The checksum that the segment of `level` carries.
-uint16_t SegmentChecksum(int level, Span<const uint8_t> payload);
+// The checksum that a segment carries. what: the level, or LayerSegmentByte.
+uint16_t SegmentChecksum(int what, Span<const uint8_t> payload);
 
 }  // namespace lacerta
 

@@ -10,6 +10,8 @@
 #include "common/coefficient_coding.h"
 #include "common/stream_layout.h"
 #include "common/subdivision.h"
+#include "decoder/layer_decoder.h"
+#include "decoder/level_limits.h"
 #include "decoder/range_decoder.h"
 #include "decoder/stream_reader.h"
 #include "decoder/synthesis.h"
@@ -38,15 +40,6 @@ Status CheckHeaderFitsBase(const RefinementHeader& header, const BaseMesh& base)
   const bool same_step = header.base_step == 0 || header.base_step == base.step;
   if (same_step && header.base_checksum == BaseChecksum(base)) return Status();
   return InvalidData("the refinement was made for another base mesh: the base was edited, reordered or mixed up");
-}
-
-Status CheckLevelFits(const Topology& t, size_t num_still, int level, const DecodeLimits& limits) {
-  const LevelCounts finer = SubdividedCounts({t.num_vertices, t.num_edges(), t.num_faces()}, 1);
-  const uint64_t num_triangles = finer.faces + num_still;
-  if (finer.vertices <= limits.max_vertices && num_triangles <= limits.max_triangles && 2 * finer.edges < kNone)
-    return Status();
-  return LimitExceeded("level " + std::to_string(level) + " (" + std::to_string(finer.vertices) + " vertices, " +
-                       std::to_string(num_triangles) + " triangles) is over the decode limits");
 }
 
 Status CheckValences(const Topology& t) {
@@ -84,16 +77,23 @@ struct ProgressiveDecoder::State {
   size_t num_still = 0;  // triangles that no level splits
   std::optional<StencilTable> stencils;
   CodingState coding;
+  std::optional<LayerDecoder> layers;      // where the stream has layers; topology, stencils and coding are not used then
+  std::vector<LayerPayload> waiting;       // for the segment that they are to be shown with
+  size_t waiting_size = 0;                 // bytes of these segments
+  int num_states = 0;                      // above the base, so far
 
   int last_level() const {
     const int announced = static_cast<int>(header->steps.size());
     return options.max_level ? std::min(announced, *options.max_level) : announced;
   }
-  bool done() const { return !refinement.ok() || (header && mesh.num_levels >= last_level()); }
+  bool done() const {
+    return !refinement.ok() || (header && (layers ? layers->is_complete() : mesh.num_levels >= last_level()));
+  }
 
   // Reads on in `bytes`; returns how many of them were used, or nothing where they end too early.
   StatusOr<std::optional<size_t>> TakeHeader(Span<const uint8_t> bytes);
   StatusOr<std::optional<size_t>> TakeSegment(Span<const uint8_t> bytes);
+  StatusOr<std::optional<size_t>> TakeLayer(Span<const uint8_t> bytes);
   void ReachFinestLevel();
   Status AddLevel(const LevelSteps& steps, Span<const uint8_t> payload);
 };
@@ -108,8 +108,25 @@ StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeHeader(Span<const
   LACERTA_RETURN_IF_ERROR(CheckValences(topology));
   mesh.tags = std::move(tags);
   num_still = NumStill(mesh.tags);
-  stencils.emplace(topology);
   header = std::move(read->header);
+  if (header->has_layers) {
+    layers.emplace(header->steps, std::move(topology), num_still, last_level(), options.limits);
+  } else {
+    stencils.emplace(topology);
+  }
+  return std::optional<size_t>(read->size);
+}
+
+StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeLayer(Span<const uint8_t> bytes) {
+  LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadLayer> read, ReadLayerSegment(bytes));
+  if (!read) return std::optional<size_t>();
+  waiting.push_back({read->segment, Bytes(read->payload.begin(), read->payload.end())});
+  waiting_size += read->size;
+  if (!read->segment.waits) {
+    LACERTA_RETURN_IF_ERROR(layers->Take(std::exchange(waiting, {})));
+    bytes_used += std::exchange(waiting_size, 0);
+    ++num_states;
+  }
   return std::optional<size_t>(read->size);
 }
 
@@ -151,6 +168,7 @@ Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const u
     return InvalidData("level " + std::to_string(mesh.num_levels + 1) + " has positions that are not finite");
   }
   ++mesh.num_levels;
+  ++num_states;
   return Status();
 }
 
@@ -171,14 +189,20 @@ Status ProgressiveDecoder::Append(Span<const uint8_t> bytes) {
   if (s.done()) return s.refinement;
   s.pending.insert(s.pending.end(), bytes.begin(), bytes.end());
   size_t used = 0;
+  const int shown_before = s.num_states;
   while (!s.done()) {
     const Span<const uint8_t> rest = Span<const uint8_t>(s.pending.data(), s.pending.size()).Subspan(used);
-    const StatusOr<std::optional<size_t>> taken = s.header ? s.TakeSegment(rest) : s.TakeHeader(rest);
+    const bool was_header = !s.header;
+    const StatusOr<std::optional<size_t>> taken = !s.header ? s.TakeHeader(rest) : s.layers ? s.TakeLayer(rest) : s.TakeSegment(rest);
     if (!taken.ok()) s.refinement = taken.status();
     if (!taken.ok() || !taken.value()) break;
     used += *taken.value();
+    if (!s.layers || was_header) s.bytes_used += *taken.value();
   }
-  s.bytes_used += used;
+  if (s.layers && s.num_states > shown_before) {
+    const Status shown = s.layers->Show(&s.mesh);
+    if (s.refinement.ok()) s.refinement = shown;
+  }
   s.pending.erase(s.pending.begin(), s.pending.begin() + static_cast<ptrdiff_t>(used));
   if (s.done()) s.pending = {};
   return s.refinement;
@@ -193,6 +217,8 @@ int ProgressiveDecoder::level() const { return state_->mesh.num_levels; }
 int ProgressiveDecoder::num_levels() const {
   return state_->header ? static_cast<int>(state_->header->steps.size()) : 0;
 }
+int ProgressiveDecoder::state() const { return state_->num_states; }
+bool ProgressiveDecoder::is_complete() const { return state_->header && state_->refinement.ok() && state_->done(); }
 size_t ProgressiveDecoder::bytes_used() const { return state_->bytes_used; }
 const Status& ProgressiveDecoder::refinement() const { return state_->refinement; }
 const SemiRegularMesh& ProgressiveDecoder::mesh() const { return state_->mesh; }
@@ -200,6 +226,7 @@ const SemiRegularMesh& ProgressiveDecoder::mesh() const { return state_->mesh; }
 std::vector<Triangle> ProgressiveDecoder::Triangles() const {
   const State& s = *state_;
   if (s.mesh.num_levels == 0) return s.mesh.base_triangles;
+  if (s.layers) return WithStillTriangles(s.layers->ShownTriangles(), s.mesh.base_triangles, s.mesh.tags);
   return WithStillTriangles(s.topology_level < s.mesh.num_levels ? RefineTriangles(s.topology) : s.topology.triangles,
                             s.mesh.base_triangles, s.mesh.tags);
 }
@@ -209,7 +236,7 @@ SemiRegularMesh ProgressiveDecoder::TakeMesh() && { return std::move(state_->mes
 StatusOr<RefinementInfo> ReadRefinementInfo(Span<const uint8_t> refinement) {
   LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadHeader> read, ReadRefinementHeader(refinement));
   if (!read) return InvalidData("the refinement header is incomplete: " + std::to_string(refinement.size()) + " bytes");
-  return RefinementInfo{static_cast<int>(read->header.steps.size()), read->header.base_step};
+  return RefinementInfo{static_cast<int>(read->header.steps.size()), read->header.base_step, read->header.has_layers};
 }
 
 StatusOr<RefinementResult> DecodeRefinement(const BaseMesh& base, Span<const uint8_t> refinement,
@@ -219,6 +246,8 @@ StatusOr<RefinementResult> DecodeRefinement(const BaseMesh& base, Span<const uin
   result.refinement = decoder.Append(refinement);
   result.level = decoder.level();
   result.num_levels = decoder.num_levels();
+  result.state = decoder.state();
+  result.is_complete = decoder.is_complete();
   result.bytes_used = decoder.bytes_used();
   result.mesh = std::move(decoder).TakeMesh();
   return result;

@@ -52,6 +52,22 @@ const char* ReadSteps(int num_levels, ByteCursor* cursor, std::vector<LevelSteps
   return "a level in the refinement header has flags, but no coefficients";
 }
 
+// A length, a checksum and so many bytes. what: as in SegmentChecksum; level: for messages.
+StatusOr<std::optional<ReadSegment>> ReadChecked(Span<const uint8_t> bytes, int what, int level) {
+  using Result = std::optional<ReadSegment>;
+  ByteCursor cursor(bytes);
+  const uint32_t length = cursor.Varint();
+  const uint16_t checksum = cursor.Word16();
+  if (cursor.malformed())
+    return InvalidData("the length of the segment of level " + std::to_string(level) + " exceeds 32 bits");
+  if (cursor.at_end() || bytes.size() - cursor.position() < length) return Result();
+  const Span<const uint8_t> payload = bytes.Subspan(cursor.position()).First(length);
+  if (SegmentChecksum(what, payload) != checksum) {
+    return InvalidData("the segment of level " + std::to_string(level) + " is damaged (checksum mismatch)");
+  }
+  return Result(ReadSegment{payload, cursor.position() + length});
+}
+
 }  // namespace
 
 StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> bytes, uint64_t max_tag_bytes) {
@@ -80,6 +96,7 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   }
   RefinementHeader header;
   const bool has_base_step = (levels_and_flags & kHasBaseStep) != 0, has_tags = (levels_and_flags & kHasTags) != 0;
+  header.has_layers = (levels_and_flags & kHasLayers) != 0;
   const uint16_t base_step_bits = has_base_step ? cursor.Word16() : uint16_t{0};
   header.base_checksum = cursor.Word16();
   const char* const fault_of_steps = ReadSteps(num_levels, &cursor, &header.steps);
@@ -103,18 +120,16 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
 }
 
 StatusOr<std::optional<ReadSegment>> ReadRefinementSegment(Span<const uint8_t> bytes, int level) {
-  using Result = std::optional<ReadSegment>;
-  ByteCursor cursor(bytes);
-  const uint32_t length = cursor.Varint();
-  const uint16_t checksum = cursor.Word16();
-  if (cursor.malformed())
-    return InvalidData("the length of the segment of level " + std::to_string(level) + " exceeds 32 bits");
-  if (cursor.at_end() || bytes.size() - cursor.position() < length) return Result();
-  const Span<const uint8_t> payload = bytes.Subspan(cursor.position()).First(length);
-  if (SegmentChecksum(level, payload) != checksum) {
-    return InvalidData("the segment of level " + std::to_string(level) + " is damaged (checksum mismatch)");
-  }
-  return Result(ReadSegment{payload, cursor.position() + length});
+  return ReadChecked(bytes, level, level);
+}
+
+StatusOr<std::optional<ReadLayer>> ReadLayerSegment(Span<const uint8_t> bytes) {
+  using Result = std::optional<ReadLayer>;
+  if (bytes.empty()) return Result();
+  const LayerSegment segment = LayerSegmentFromByte(bytes[0]);
+  LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadSegment> read, ReadChecked(bytes.Subspan(1), bytes[0], segment.level));
+  if (!read) return Result();
+  return Result(ReadLayer{segment, read->payload, read->size + 1});
 }
 
 }  // namespace lacerta

@@ -33,6 +33,15 @@ struct ReadSegment {
 // where the length is malformed or the checksum is wrong.
 StatusOr<std::optional<ReadSegment>> ReadRefinementSegment(Span<const uint8_t> bytes, int level);
 
+struct ReadLayer {
+  LayerSegment segment;
+  Span<const uint8_t> payload;
+  size_t size = 0;
+};
+
+// The segment at the beginning of `bytes` of a stream with layers, as above.
+StatusOr<std::optional<ReadLayer>> ReadLayerSegment(Span<const uint8_t> bytes);
+
 }  // namespace lacerta
 
 #endif  // LACERTA_DECODER_STREAM_READER_H_

@@ -58,10 +58,10 @@ double CandidateSearch::CodingPsnr(double psnr) const {
 
 double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogBytesPerLogLambda : kPsnrPerLogLambda; }
 
-StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, int passes) {
+StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, int passes, int quality_layers) {
   Attempt attempt;
   const double lambda = std::exp(log_lambda);
-  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({lambda, lambda * steps_.details, lambda * steps_.base, steps_.last_detailed, passes}, mode_));
+  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({lambda, lambda * steps_.details, lambda * steps_.base, steps_.last_detailed, passes, quality_layers}, mode_));
   const double estimate = EstimatePsnr(attempt.stream);
   if (!offset_) {
     constexpr uint64_t kRoughSamples = 50'000;
@@ -132,7 +132,7 @@ StatusOr<double> CandidateSearch::Score() {
   for (int i = 0; i < kScoreTries; ++i) {
     const double log_lambda = NextGuess();
     steps_.last_detailed = candidate_.LastDetailed(std::exp(log_lambda));
-    LACERTA_ASSIGN_OR_RETURN(const Attempt attempt, Try(log_lambda, effort_.score_passes));
+    LACERTA_ASSIGN_OR_RETURN(const Attempt attempt, Try(log_lambda, effort_.score_passes, 1));
     const double miss = Goal() - attempt.value;
     if (std::fabs(miss) >= least_miss) continue;
     least_miss = std::fabs(miss);
@@ -151,7 +151,7 @@ void CandidateSearch::SuitSteps() {
   const auto improves = [&](const StepChoice& choice) {
     if (choice.last_detailed < 1 || choice.last_detailed > candidate_.num_levels()) return false;
     const StepChoice before = std::exchange(steps_, choice);
-    const StatusOr<Attempt> attempt = Try(start_, effort_.suit_passes);
+    const StatusOr<Attempt> attempt = Try(start_, effort_.suit_passes, 1);
     if (attempt.ok() && Merit(attempt.value()) < least) {
       least = Merit(attempt.value());
       start_ += (Goal() - attempt.value().value) / TypicalSlope();
@@ -189,7 +189,7 @@ StatusOr<MeasuredStream> CandidateSearch::MeetRate() {
   const auto excess = [&](const Attempt& a) { return a.value - std::log(target_.bytes); };
   std::optional<Attempt> best;
   for (int i = 0; i < kMeetTries && !(best && excess(*best) <= 0 && excess(*best) >= -kBytesSlack); ++i) {
-    StatusOr<Attempt> tried = Try(NextGuess(), effort_.meet_passes);
+    StatusOr<Attempt> tried = Try(NextGuess(), effort_.meet_passes, target_.quality_layers);
     if (!tried.ok() && best) break;  // so coarse a lattice cannot carry the base: what there is must do
     LACERTA_ASSIGN_OR_RETURN(Attempt attempt, std::move(tried));
     const bool keeps = excess(attempt) <= 0, kept = best && excess(*best) <= 0;
@@ -223,7 +223,7 @@ StatusOr<MeasuredStream> CandidateSearch::MeetQuality() {
   std::optional<Attempt> unmeasured;
   for (int i = 0; i < kEstimatedTries && !(is_done() && i >= effort_.least_tries) && measurements_ < kMostMeasurements; ++i) {
     const double log_lambda = NextGuess();
-    StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes);
+    StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes, target_.quality_layers);
     if (!tried.ok() && (best || unmeasured)) break;
     LACERTA_ASSIGN_OR_RETURN(Attempt attempt, std::move(tried));
     if (rank(attempt) < 2) {  // by the estimate
@@ -246,7 +246,7 @@ StatusOr<MeasuredStream> CandidateSearch::MeetQuality() {
   offset_ = 0;
   for (int i = kEstimatedTries; i < kMeetTries && !is_done() && !CannotReach(); ++i) {
     const double log_lambda = NextGuess();
-    StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes);
+    StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes, target_.quality_layers);
     if (!tried.ok()) break;
     values_[log_lambda] = measure(std::move(tried).value());
   }

@@ -20,6 +20,7 @@ struct ResolvedTarget {
   double bytes = 0;  // where is_rate: at most
   double psnr = 0;   // else: at least, dB
   BaseCoding base_coding = BaseCoding::kStock;
+  int quality_layers = 1;
 };
 
 // A stream with what is known of its quality.
@@ -63,7 +64,7 @@ class CandidateSearch {
     double psnr = 0;   // dB: estimated, or measured once it was
     double value = 0;  // as in values_
   };
-  StatusOr<Attempt> Try(double log_lambda, int passes);  // passes: of the descent
+  StatusOr<Attempt> Try(double log_lambda, int passes, int quality_layers);  // passes: of the descent
   double EstimatePsnr(const CodedStream& stream) const;
   double MeasurePsnr(const Attempt& attempt, uint64_t num_samples);
   double Goal() const;  // the value aimed at

@@ -22,17 +22,18 @@ Status Refine(Span<const uint8_t> refinement, const DecodeOptions& options, floa
   LACERTA_ASSIGN_OR_RETURN(ProgressiveDecoder decoder, ProgressiveDecoder::Create(base, refinement_options));
   const Status refined = decoder.Append(refinement);
   result->level = decoder.level();
+  result->state = decoder.state();
   if (result->level > 0) {
     result->mesh.triangles = decoder.Triangles();
     result->mesh.positions = std::move(decoder).TakeMesh().positions;
   }
   LACERTA_RETURN_IF_ERROR(refined);
-  const bool stopped = options.max_level.has_value() && result->level >= *options.max_level;
-  if (result->level < info.num_levels && !stopped) {
+  if (decoder.is_complete()) return {};
+  if (result->level < info.num_levels) {
     return InvalidData("stream ends within level " + std::to_string(result->level + 1) + " of " +
                        std::to_string(info.num_levels));
   }
-  return {};
+  return InvalidData("stream ends before the last quality layer");
 }
 
 }  // namespace

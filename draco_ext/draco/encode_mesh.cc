@@ -26,16 +26,29 @@
 namespace lacerta {
 namespace {
 
-// Measured error of every level that `stream` decodes to.
+constexpr int kMostQualityLayers = 8;
+
+// Measured error of every state that `stream` decodes to.
 Status ReportLevels(const SurfaceDistanceMeter& meter, const CodedStream& stream, EncodeReport* report) {
+  LACERTA_ASSIGN_OR_RETURN(ProgressiveDecoder decoder, ProgressiveDecoder::Create(stream.base_mesh, {}));
+  LACERTA_ASSIGN_OR_RETURN(const RefinementInfo info, ReadRefinementInfo(stream.refinement));
   uint64_t bytes = 0;
-  for (int level = 0; level <= stream.decoded.num_levels; ++level) {
-    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, MeshAtLevel(stream.decoded, level));
+  size_t refinement_bytes = 0;
+  for (size_t i = 0; i < stream.part_sizes.size(); ++i) {
+    const size_t size = stream.part_sizes[i];
+    if (i > 0 && info.has_layers) {
+      LACERTA_RETURN_IF_ERROR(decoder.Append(Span<const uint8_t>(stream.refinement).Subspan(refinement_bytes).First(size)));
+      refinement_bytes += size;
+    }
+    TriangleMesh mesh{decoder.mesh().positions, decoder.Triangles()};
+    if (!info.has_layers) {
+      LACERTA_ASSIGN_OR_RETURN(mesh, MeshAtLevel(stream.decoded, static_cast<int>(i)));
+    }
     constexpr uint64_t kCoarseSamples = 50'000;  // far from the input, where few tell as much as many
-    const SurfaceDistanceOptions options =
-        level < stream.decoded.num_levels ? SurfaceDistanceOptions::RmsOnly(kCoarseSamples) : SurfaceDistanceOptions::RmsOnly();
-    const double distance = DecodedDistance(meter, mesh, options);
-    bytes += stream.part_sizes[static_cast<size_t>(level)];
+    const bool is_last = i + 1 == stream.part_sizes.size();
+    const double distance =
+        DecodedDistance(meter, mesh, is_last ? SurfaceDistanceOptions::RmsOnly() : SurfaceDistanceOptions::RmsOnly(kCoarseSamples));
+    bytes += size;
     report->levels.push_back({mesh.positions.size(), mesh.triangles.size(), bytes, distance, Psnr(distance, meter.diagonal())});
   }
   return Status();
@@ -167,7 +180,11 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(input));
   const TriangleMesh& mesh = cleaned.mesh;
   LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget asked, ResolveTarget(options.target, mesh.positions.size()));
-  const ResolvedTarget target = LessForm(asked, options.form);
+  if (options.quality_layers < 1 || options.quality_layers > kMostQualityLayers) {
+    return InvalidArgument(std::to_string(options.quality_layers) + " quality layers; 1 to " + std::to_string(kMostQualityLayers) + " are possible");
+  }
+  ResolvedTarget target = LessForm(asked, options.form);
+  target.quality_layers = options.quality_layers;
   LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(mesh));
   EncodeReport report;
   report.clean = cleaned.report;

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "common/base_tags.h"
+#include "encoder/layer_split.h"
+#include "encoder/layer_writer.h"
 #include "encoder/paper_mode.h"
 #include "encoder/quantizer.h"
 #include "encoder/step_law.h"
@@ -135,9 +137,7 @@ StatusOr<CodedStream> NormalMeshCandidate::Code(const CodingSlope& slope, Encode
   LACERTA_ASSIGN_OR_RETURN(const CodedSurface coded, CodeSurface(slope, mode));
   CodedStream stream;
   LACERTA_ASSIGN_OR_RETURN(stream.base, RecodeBaseMesh(base_, coded.base));
-  const Span<const Topology> topologies = Span<const Topology>(target_.topologies.data(), coded.levels.size());
-  const BaseStepField base_step = base_.coding == BaseCoding::kCompact ? BaseStepField::kLeftOut : BaseStepField::kWritten;
-  LACERTA_ASSIGN_OR_RETURN(RefinementBytes refinement, WriteRefinement(coded.base, topologies, coded.steps, coded.levels, normal_mesh_.mesh.tags, base_step));
+  LACERTA_ASSIGN_OR_RETURN(RefinementBytes refinement, Write(coded, slope));
   stream.part_sizes = {stream.base.size()};
   stream.part_sizes.insert(stream.part_sizes.end(), refinement.part_sizes.begin(), refinement.part_sizes.end());
   stream.refinement = std::move(refinement.bytes);
@@ -145,7 +145,20 @@ StatusOr<CodedStream> NormalMeshCandidate::Code(const CodingSlope& slope, Encode
                     normal_mesh_.mesh.tags};
   stream.plane_distortion = PlaneDistortion(target_, stream.decoded.positions);
   stream.triangles = FinestTriangles();
+  stream.base_mesh = coded.base;
   return stream;
+}
+
+StatusOr<RefinementBytes> NormalMeshCandidate::Write(const CodedSurface& coded, const CodingSlope& slope) const {
+  const BaseStepField base_step = base_.coding == BaseCoding::kCompact ? BaseStepField::kLeftOut : BaseStepField::kWritten;
+  const BaseTags& tags = normal_mesh_.mesh.tags;
+  if (slope.quality_layers > 1) {
+    constexpr int kLayerPasses = 2;
+    const std::vector<QualityLayer> layers = SplitIntoLayers(target_, detail_scales_, coded, slope.lambda, slope.quality_layers, kLayerPasses);
+    if (layers.size() > 1) return WriteLayers(target_, layers, tags, base_step);
+  }
+  const Span<const Topology> topologies(target_.topologies.data(), coded.levels.size());
+  return WriteRefinement(coded.base, topologies, coded.steps, coded.levels, tags, base_step);
 }
 
 std::vector<Triangle> NormalMeshCandidate::FinestTriangles() const {

@@ -11,6 +11,7 @@
 #include "draco/refinable_surface.h"
 #include "encoder/coefficient_descent.h"
 #include "encoder/step_law.h"
+#include "encoder/stream_writer.h"
 #include "encoder/surface_target.h"
 #include "lacerta/codec.h"
 
@@ -24,6 +25,7 @@ struct CodedStream {
   Bytes base;                        // the base section
   Bytes refinement;
   std::vector<size_t> part_sizes;    // of the base section, then as in RefinementBytes
+  BaseMesh base_mesh;                // as decoders get it
   SemiRegularMesh decoded;
   std::vector<Triangle> triangles;   // of the finest level, as MeshAtLevel orders them
   double plane_distortion = 0;       // PlaneDistortion: about the squared distance to the unquantized remesh
@@ -39,6 +41,7 @@ struct CodingSlope {
   double base_lambda = 0;  // of the base lattice
   int last_detailed = 1;   // level, 1 .. L, for StepsForSlope
   int passes = DescentOptions().passes;
+  int quality_layers = 1;
 };
 
 class NormalMeshCandidate {
@@ -54,7 +57,7 @@ class NormalMeshCandidate {
 
   // Codes at a slope of the rate-distortion curve: lambda in squared model units per bit, > 0. A larger one gives fewer bytes.
   StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const {
-    return Code({lambda, lambda, lambda, LastDetailed(lambda), DescentOptions().passes}, mode);
+    return Code({lambda, lambda, lambda, LastDetailed(lambda), DescentOptions().passes, 1}, mode);
   }
   StatusOr<CodedStream> Code(const CodingSlope& slope, EncodeMode mode) const;
 
@@ -70,6 +73,7 @@ class NormalMeshCandidate {
  private:
   BaseMesh BaseLattice(const TriangleMesh& base, double step) const;
   StatusOr<CodedSurface> CodeSurface(const CodingSlope& slope, EncodeMode mode) const;
+  StatusOr<RefinementBytes> Write(const CodedSurface& coded, const CodingSlope& slope) const;
   std::vector<Triangle> FinestTriangles() const;  // in the order of MeshAtLevel
 
   CodedBase base_;  // at a nominal step: fixes the order

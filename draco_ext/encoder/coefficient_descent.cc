@@ -79,14 +79,17 @@ void DescendBase(const SurfaceTarget& target, std::vector<Vec3f> gradient, BaseM
 //   positions  of the coarser level; predicted: PredictMidpoints there
 //   gradient   for LocalModel
 void DescendLevel(const SurfaceTarget& target, int level, const std::vector<Vec3f>& positions, const std::vector<Vec3f>& predicted,
-                  std::vector<Vec3f> gradient, double lambda, CodedSurface* coded, CodingState* state) {
+                  std::vector<Vec3f> gradient, const DescentOptions& options, CodedSurface* coded, CodingState* state) {
   const Topology& coarse = target.topologies[level - 1];
   const LevelSteps& steps = coded->steps[level - 1];
   const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
   LocalModel model(target, level, std::move(gradient));
   BitMeter meter;
+  const FinerLayer* const finer = options.finer;
+  const bool is_fixed = finer != nullptr && finer->drops[level - 1] == 0;
   const auto choose = [&](CoefficientKind kind, uint32_t edge, SetModels& models, const CoefficientContext& context,
                           int32_t* value) {
+    if (is_fixed) return;
     const LocalFrame& frame = frames[edge];
     const Vec3f& direction = kind == CoefficientKind::kNormal       ? frame.normal
                              : kind == CoefficientKind::kTangential1 ? frame.tangent1
@@ -95,8 +98,9 @@ void DescendLevel(const SurfaceTarget& target, int level, const std::vector<Vec3
     const uint32_t v = coarse.num_vertices + edge;
     constexpr float kTrust = 0.25f;  // of the edge
     const float reach = kTrust * Norm(positions[coarse.edges[edge][1]] - positions[coarse.edges[edge][0]]);
-    const int32_t best = BestValue(model.Along(v, direction), *value, step, reach, lambda,
-                                   [&](int32_t q) { return CoefficientBits(models, context, q); });
+    const int32_t best = BestValue(model.Along(v, direction), *value, step, reach, options.lambda, [&](int32_t q) {
+      return CoefficientBits(models, context, q) + (finer != nullptr ? finer->Bits(level, kind, edge, q) : 0.0f);
+    });
     if (best == *value) return;
     model.Move(v, direction * (static_cast<float>(best - *value) * step));
     *value = best;
@@ -123,7 +127,7 @@ void DescendOnce(const SurfaceTarget& target, const DescentOptions& options, Cod
     for (size_t v = 0; v < gradient.size(); ++v) {
       gradient[v] += Weigh(target, v, present[v] - before[v]) * target.masses[ahead][v];
     }
-    DescendLevel(target, level, *positions, predicted, std::move(gradient), options.lambda, coded, &state);
+    DescendLevel(target, level, *positions, predicted, std::move(gradient), options, coded, &state);
     AppendMidpoints(coarse, predicted, coded->steps[level - 1], coded->levels[level - 1], positions);
   }
 }
@@ -148,23 +152,10 @@ std::vector<SetBits> CountBits(const SurfaceTarget& target, CodedSurface coded) 
   return bits;
 }
 
-// PlaneDistortion, but for curves, whose vertices may be off in all directions.
-double DistortionWithCurves(const SurfaceTarget& target, const std::vector<Vec3f>& positions) {
-  const std::vector<CurveRole>& role = target.topologies.back().role;
-  double sum = PlaneDistortion(target, positions);
-  for (size_t v = 0; v < positions.size(); ++v) {
-    if (role[v] == CurveRole::kSmooth) continue;
-    const Vec3f offset = positions[v] - target.points[v];
-    const double distance = Dot(offset, target.normals[v]);
-    sum += target.masses.back()[v] * (Dot(offset, Weigh(target, v, offset)) - distance * distance);
-  }
-  return sum;
-}
-
 // Leaves out whole sets, finest first, where that saves more rate than it costs distortion: zeros are cheap, not free.
 //   positions  Synthesize of `coded`
 void DropIdleSets(const SurfaceTarget& target, double lambda, std::vector<Vec3f> positions, CodedSurface* coded) {
-  double distortion = DistortionWithCurves(target, positions);
+  double distortion = SurfaceDistortion(target, positions);
   const auto try_without = [&](float LevelSteps::*step, std::vector<int32_t> QuantizedLevel::*set, size_t i, double bits) {
     if (bits == 0) return;
     std::vector<int32_t>& values = coded->levels[i].*set;
@@ -174,7 +165,7 @@ void DropIdleSets(const SurfaceTarget& target, double lambda, std::vector<Vec3f>
       values.swap(kept);
       std::vector<Vec3f> without(positions.begin(), positions.begin() + target.topologies[i].num_vertices);
       for (int level = static_cast<int>(i) + 1; level <= target.num_levels(); ++level) AppendLevel(target, *coded, level, &without);
-      const double raised = DistortionWithCurves(target, without);
+      const double raised = SurfaceDistortion(target, without);
       if (raised - distortion > lambda * bits) {
         values.swap(kept);
         return;
@@ -192,6 +183,26 @@ void DropIdleSets(const SurfaceTarget& target, double lambda, std::vector<Vec3f>
 }
 
 }  // namespace
+
+// Rough figures: a segment is coded after many decisions about the layer before it.
+float FinerLayer::Bits(int level, CoefficientKind kind, uint32_t edge, int32_t value) const {
+  const QuantizedLevel& wanted = (*levels)[level - 1];
+  const int32_t goal = kind == CoefficientKind::kNormal ? wanted.normal[edge]
+                                                        : wanted.tangential[size_t{2} * edge + (kind == CoefficientKind::kTangential2)];
+  const int32_t residual = goal - value * (1 << drops[level - 1]);
+  const auto magnitude = static_cast<float>(Magnitude(residual));
+  float bits;
+  if (value == 0) {
+    bits = residual == 0 ? 0.3f : 3.0f + 2.0f * std::log2(magnitude);
+  } else if (residual == 0) {
+    bits = 0.8f;
+  } else if ((residual > 0) == (value > 0)) {
+    bits = residual == 1 || residual == -1 ? 1.2f : 3.0f + 1.5f * std::log2(magnitude);
+  } else {
+    bits = 3.5f + 2.0f * std::log2(magnitude);
+  }
+  return static_cast<float>(weight) * bits;
+}
 
 std::vector<Vec3f> Synthesize(const SurfaceTarget& target, const CodedSurface& coded) {
   std::vector<Vec3f> positions = LatticePoints(coded.base);
@@ -212,6 +223,18 @@ double PlaneDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& po
     area += doubled_area;
   }
   return area > 0 ? sum / area : 0;
+}
+
+double SurfaceDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& positions) {
+  const std::vector<CurveRole>& role = target.topologies.back().role;
+  double sum = PlaneDistortion(target, positions);
+  for (size_t v = 0; v < positions.size(); ++v) {
+    if (role[v] == CurveRole::kSmooth) continue;
+    const Vec3f offset = positions[v] - target.points[v];
+    const double distance = Dot(offset, target.normals[v]);
+    sum += target.masses.back()[v] * (Dot(offset, Weigh(target, v, offset)) - distance * distance);
+  }
+  return sum;
 }
 
 CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& base, const std::vector<LevelSteps>& steps) {
@@ -252,7 +275,7 @@ CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& bas
 CodedSurface Descend(const SurfaceTarget& target, CodedSurface coded, const DescentOptions& options) {
   std::vector<Vec3f> positions = Synthesize(target, coded);
   for (int pass = 0; pass < options.passes; ++pass) DescendOnce(target, options, &coded, &positions);
-  if (!target.keeps_vertices) DropIdleSets(target, options.lambda, std::move(positions), &coded);  // by distance to the surface alone
+  if (!target.keeps_vertices && options.finer == nullptr) DropIdleSets(target, options.lambda, std::move(positions), &coded);  // by distance to the surface alone
   return coded;
 }
 

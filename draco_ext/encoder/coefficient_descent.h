@@ -10,6 +10,7 @@
 
 #include <vector>
 
+#include "common/coefficient_coding.h"
 #include "common/coefficient_sets.h"
 #include "encoder/surface_target.h"
 #include "lacerta/decoder.h"
@@ -23,10 +24,22 @@ struct CodedSurface {
   std::vector<QuantizedLevel> levels;   // L
 };
 
+// What a finer quality layer refines coefficients into: those of a level with 2^drop times smaller steps. Choices whose refinement takes
+// many bits cost more. A level whose drop is 0 stays as it is.
+struct FinerLayer {
+  const std::vector<QuantizedLevel>* levels = nullptr;  // L
+  std::vector<int> drops;                               // L
+  double weight = 1;                                    // of these bits
+
+  // About the bits that turn `value` of a level (1 .. L) into what is wanted.
+  float Bits(int level, CoefficientKind kind, uint32_t edge, int32_t value) const;
+};
+
 struct DescentOptions {
   double lambda = 0.0;   // squared model units per bit
   int passes = 3;
   bool move_base = true;  // the lattice points of the base may move too
+  const FinerLayer* finer = nullptr;  // where it is a quality layer; no set is left out then
 };
 
 // The surface that a decoder makes of it, all levels: #V of the finest.
@@ -43,6 +56,8 @@ CodedSurface Descend(const SurfaceTarget& target, CodedSurface coded, const Desc
 // linearly over a triangle. With the squared distance of the unquantized remesh added it foretells the measured one within some hundredths
 // of a dB; masses lumped at the vertices overstate it by up to 1.7 dB, since errors of neighbors partly cancel. positions: #V of the finest level.
 double PlaneDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& positions);
+// The same, but for curves, whose vertices may be off in all directions.
+double SurfaceDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& positions);
 
 }  // namespace lacerta
 

@@ -64,11 +64,12 @@ void PutSteps(const std::vector<LevelSteps>& steps, Bytes* bytes) {
   bytes->insert(bytes->end(), fields.begin(), fields.end());
 }
 
-Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps, const Bytes& tags, BaseStepField base_step) {
+Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps, const Bytes& tags, BaseStepField base_step, bool has_layers) {
   Bytes bytes(kRefinementMagic.begin(), kRefinementMagic.end());
   bytes.push_back(kRefinementVersion);
   const bool has_base_step = base_step == BaseStepField::kWritten;
-  bytes.push_back(static_cast<uint8_t>(steps.size() | (tags.empty() ? 0 : kHasTags) | (has_base_step ? kHasBaseStep : 0)));
+  bytes.push_back(static_cast<uint8_t>(steps.size() | (tags.empty() ? 0 : kHasTags) | (has_base_step ? kHasBaseStep : 0) |
+                                       (has_layers ? kHasLayers : 0)));
   if (has_base_step) PutWord16(StepToBits(base.step), &bytes);
   PutWord16(BaseChecksum(base), &bytes);
   PutSteps(steps, &bytes);
@@ -130,6 +131,21 @@ Status CheckLevel(int level, const Topology& t, const LevelSteps& steps, const Q
                   steps.tangential_bias);
 }
 
+// The header, where all that goes into the stream keeps to the rules of WriteRefinement; no byte where there is no level.
+StatusOr<Bytes> CheckAndWriteHeader(const BaseMesh& base, Span<const Topology> topologies, const std::vector<LevelSteps>& steps,
+                                    const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step, bool has_layers) {
+  if (topologies.size() != levels.size() || steps.size() != levels.size()) {
+    return InvalidArgument("numbers of topologies, steps and levels differ");
+  }
+  if (!(base.step > 0) || RoundStep(base.step) != base.step) return InvalidArgument("the base step must be a positive number of 8 significant bits");
+  if (levels.empty()) return Bytes();
+  LACERTA_ASSIGN_OR_RETURN(const Bytes coded_tags, WriteTags(base, tags, topologies[0]));
+  for (size_t i = 0; i < levels.size(); ++i) {
+    LACERTA_RETURN_IF_ERROR(CheckLevel(static_cast<int>(i) + 1, topologies[i], steps[i], levels[i]));
+  }
+  return WriteHeader(base, steps, coded_tags, base_step, has_layers);
+}
+
 }  // namespace
 
 StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_levels, const BaseTags& tags) {
@@ -154,26 +170,23 @@ StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_le
   return topologies;
 }
 
+StatusOr<Bytes> WriteLayeredHeader(const BaseMesh& base, Span<const Topology> topologies, const std::vector<LevelSteps>& steps,
+                                   const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step) {
+  return CheckAndWriteHeader(base, topologies, steps, levels, tags, base_step, true);
+}
+
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topology> topologies,
                                           const std::vector<LevelSteps>& steps,
                                           const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step) {
-  if (topologies.size() != levels.size() || steps.size() != levels.size()) {
-    return InvalidArgument("numbers of topologies, steps and levels differ");
-  }
-  if (!(base.step > 0) || RoundStep(base.step) != base.step) return InvalidArgument("the base step must be a positive number of 8 significant bits");
   RefinementBytes result;
-  if (levels.empty()) return result;
-  LACERTA_ASSIGN_OR_RETURN(const Bytes coded_tags, WriteTags(base, tags, topologies[0]));
-  result.bytes = WriteHeader(base, steps, coded_tags, base_step);
+  LACERTA_ASSIGN_OR_RETURN(result.bytes, CheckAndWriteHeader(base, topologies, steps, levels, tags, base_step, false));
   size_t part_begin = 0;
   CodingState state;
   for (size_t i = 0; i < levels.size(); ++i) {
-    const int level = static_cast<int>(i) + 1;
-    LACERTA_RETURN_IF_ERROR(CheckLevel(level, topologies[i], steps[i], levels[i]));
     RangeEncoder encoder;
     QuantizedLevel coefficients = levels[i];
     CodeLevel(topologies[i], steps[i], &state, &coefficients, &encoder);
-    if (!steps[i].is_silent()) PutSegment(level, encoder.Finish(), &result.bytes);
+    if (!steps[i].is_silent()) PutSegment(static_cast<int>(i) + 1, encoder.Finish(), &result.bytes);
     result.part_sizes.push_back(result.bytes.size() - part_begin);
     part_begin = result.bytes.size();
   }

@@ -48,6 +48,10 @@ StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, const std::vecto
                                           const std::vector<QuantizedLevel>& levels, const BaseTags& tags = {},
                                           BaseStepField base_step = BaseStepField::kWritten);
 
+// The header of a refinement with quality layers, for the same arguments: steps and levels are those of the last layer.
+StatusOr<Bytes> WriteLayeredHeader(const BaseMesh& base, Span<const Topology> topologies, const std::vector<LevelSteps>& steps,
+                                   const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step);
+
 }  // namespace lacerta
 
 #endif  // LACERTA_ENCODER_STREAM_WRITER_H_

@@ -28,6 +28,7 @@ struct PackArguments {
   std::string mode = "default";
   std::string levels = "any";
   std::string effort = "normal";
+  int quality_layers = 1;
   bool json = false;
 };
 
@@ -141,6 +142,7 @@ int RunPack(const PackArguments& arguments) {
   EncodeOptions options;
   options.target = Target(arguments);
   options.form = arguments.form == "custom" ? StreamForm::kCustom : StreamForm::kDraco;
+  options.quality_layers = arguments.quality_layers;
   options.levels = arguments.levels == "0"        ? LevelChoice::kNever
                    : arguments.levels == "always" ? LevelChoice::kAlways
                                                   : LevelChoice::kWhereTheyPay;
@@ -178,6 +180,10 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
       ->check(CLI::IsMember({"draco", "custom"}));
   pack->add_option("--mode", arguments->mode, "default, or paper: as published, open loop")
       ->check(CLI::IsMember({"default", "paper"}));
+  pack->add_option("--quality-layers", arguments->quality_layers,
+                   "1 (default) to 8: coefficients come in so many rounds, so that a file cut short is nearer to the surface; the whole takes "
+                   "some percent more bytes")
+      ->check(CLI::Range(1, 8));
   pack->add_option("--levels", arguments->levels, "any (default): refinement unless a simplified mesh without levels is clearly smaller; always; 0: never")
       ->check(CLI::IsMember({"any", "always", "0"}));
   pack->add_option("--effort", arguments->effort, "fast: 30 % less time, 2 % more bytes; normal (default); best: 80 % more time, 2 % fewer bytes")

@@ -62,11 +62,14 @@ struct EncodeOptions {
   EncodeMode mode = EncodeMode::kDefault;
   LevelChoice levels = LevelChoice::kWhereTheyPay;
   Effort effort = Effort::kNormal;
+  // 1..8. With more than one the coefficients of a level come in several rounds, coarse values first, so that a stream cut short is
+  // nearer to the surface; the whole takes some more bytes (docs/results/prefix_table.md).
+  int quality_layers = 1;
   // Called now and then with the finished share (0..1) and what is being done; may be empty.
   std::function<void(double share, const char* stage)> progress;
 };
 
-// One decodable state of the stream.
+// One decodable state of the stream: a level or, with quality layers, a level at some quality.
 struct LevelReport {
   uint64_t vertices = 0;
   uint64_t triangles = 0;
@@ -98,13 +101,13 @@ struct EncodeReport {
   double normal_share = 0.0;      // share of detail coefficients whose remeshed position lies on the normal line
   double remesh_psnr = 0.0;       // of the unquantized remesh
   int measurements = 0;           // of the surface distance that it took to bring this stream to its target
-  std::vector<LevelReport> levels;  // base first
+  std::vector<LevelReport> levels;  // base first; one per part of the stream
 };
 
 struct EncodedMesh {
   Bytes stream;
-  // Lengths of the parts of `stream`, in order: the base section, then one part per refinement level (the refinement header
-  // belongs to the first of them). They add up to stream.size().
+  // Lengths of the parts of `stream`, in order: the base section, then one part per decodable state, that is per level or, with
+  // quality layers, per state of ProgressiveDecoder (the refinement header belongs to the first of them). They add up to stream.size().
   std::vector<size_t> part_sizes;
   EncodeReport report;
 };
@@ -117,6 +120,7 @@ struct DecodedMesh {
   TriangleMesh mesh;
   int level = 0;          // of `mesh`
   int num_levels = 0;     // refinement levels that the stream announces
+  int state = 0;          // as ProgressiveDecoder::state()
   // Ok, or why the refinement stopped before num_levels (a damaged or truncated segment): `mesh` is what came before it.
   Status refinement;
 };

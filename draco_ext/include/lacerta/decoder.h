@@ -58,6 +58,7 @@ StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level);
 struct RefinementInfo {
   int num_levels = 0;
   float base_step = 0.0f;  // model units: what BaseMeshFromPositions wants; 0 where only the compact base tells it
+  bool has_layers = false;  // levels come in several rounds
 };
 
 // Reads the header at the beginning of the bytes that follow the base section. Fails with kInvalidData where there is
@@ -88,6 +89,10 @@ class ProgressiveDecoder {
 
   int level() const;          // of the finest complete level
   int num_levels() const;     // that the header announces; 0 before it is complete
+  // Meshes above the base that the bytes so far make, one after the other. Without quality layers they are the levels; with layers a
+  // later one may have the same level as the one before, and be nearer to the surface. mesh() is the last of them.
+  int state() const;
+  bool is_complete() const;   // nothing that is wanted is missing
   size_t bytes_used() const;  // length of the prefix that holds mesh(): header and complete segments
   // Ok, or why the refinement ended early: damaged or unsupported bytes (kInvalidData, kUnsupported), a base that it
   // was not made for (kInvalidData), or a level over the limits (kLimitExceeded). Bytes that just end are no failure.
@@ -109,7 +114,9 @@ struct RefinementResult {
   SemiRegularMesh mesh;  // base and complete levels
   int level = 0;         // of mesh
   int num_levels = 0;    // that the header announces; 0 where there is no complete header
-  Status refinement;  // as ProgressiveDecoder::refinement(); ok with level < num_levels: the bytes ended (or max_level)
+  int state = 0;         // as ProgressiveDecoder::state()
+  bool is_complete = false;  // as ProgressiveDecoder::is_complete()
+  Status refinement;  // as ProgressiveDecoder::refinement(); ok and not complete: the bytes ended
   size_t bytes_used = 0;  // as ProgressiveDecoder::bytes_used()
 };
 
