@@ -13,6 +13,7 @@ namespace {
 Status Refine(Span<const uint8_t> refinement, const DecodeOptions& options, float base_step, DecodedMesh* result) {
   LACERTA_ASSIGN_OR_RETURN(const RefinementInfo info, ReadRefinementInfo(refinement));
   result->num_levels = info.num_levels;
+  result->has_layers = info.has_layers;
   if (info.base_step != 0) base_step = info.base_step;
   if (base_step == 0) return InvalidData("neither the base mesh nor the refinement header tells the step of the base lattice");
   LACERTA_ASSIGN_OR_RETURN(const BaseMesh base, BaseMeshFromPositions(result->mesh, base_step));

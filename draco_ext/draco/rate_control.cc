@@ -40,6 +40,8 @@ struct Rung {
 
 // Candidates that are taken to the target in all. No more are kept than are taken at a time: each is as large as the input.
 constexpr size_t kMost = 4;
+// What a PSNR costs, about: ln(bytes) per dB.
+constexpr double kLogBytesPerDecibel = 0.11;
 
 class Ladder {
  public:
@@ -169,6 +171,10 @@ class Ladder {
     if (const std::optional<double> start = StartOf(number)) rung->search->BeginAt(*start);
     if (!target_.is_rate && rung->remesh_psnr < target_.psnr + kHeadroom) return Status();
     LACERTA_ASSIGN_OR_RETURN(rung->score, rung->search->Score());
+    if (target_.quality_layers > 1) {  // a large base comes before all else: it costs prefixes what it saves at the end
+      constexpr double kPrefixCost = 0.03;  // of ln(bytes), per rung
+      rung->score += kPrefixCost * number * (target_.is_rate ? 1 / kLogBytesPerDecibel : 1.0);
+    }
     rung->start = rung->search->start();
     return Status();
   }
@@ -241,8 +247,9 @@ StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const Surfa
   if (progress) progress(0.8, "meeting the target");
   // Scores are estimates: a few candidates at a time are taken to the target until one meets it, and the better of them is kept.
   std::optional<ChosenStream> best;
-  for (size_t first = 0; first < std::min(kMost, rungs.size()); first += effort.at_a_time) {
-    const size_t count = std::min(effort.at_a_time, rungs.size() - first);
+  const size_t at_a_time = target.quality_layers > 1 ? 1 : effort.at_a_time;  // with layers the fewest bytes are not all that counts
+  for (size_t first = 0; first < std::min(kMost, rungs.size()); first += at_a_time) {
+    const size_t count = std::min(at_a_time, rungs.size() - first);
     std::vector<StatusOr<ChosenStream>> met(count, InternalError("not tried"));
     ForEachCandidate(static_cast<double>(surface.surface.mesh().positions.size()), count,
                      [&](size_t i) { met[i] = ladder.Meet(rungs[first + i]); });

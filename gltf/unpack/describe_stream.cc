@@ -20,10 +20,35 @@ uint64_t CountEdges(const std::vector<Triangle>& triangles) {
   return edges.size();
 }
 
+// Adds what can be shown of a stream with quality layers, one entry per segment that does not wait for the next one. Vertices are those of
+// the finest level that has begun: decoders may show smoother ones.
+void AddLayers(Span<const uint8_t> refinement, size_t offset, uint64_t num_edges, StreamInfo* info) {
+  StreamInfo::Level level = info->levels[0];
+  const uint64_t base_bytes = level.bytes;
+  int finest = 0;
+  for (;;) {
+    const StatusOr<std::optional<ReadLayer>> read = ReadLayerSegment(refinement.Subspan(offset));
+    if (!read.ok() || !read.value().has_value()) return;
+    offset += read.value()->size;
+    for (; finest < read.value()->segment.level; ++finest) {
+      level.vertices += num_edges;
+      num_edges = 2 * num_edges + 3 * level.triangles;
+      level.triangles *= 4;
+    }
+    if (read.value()->segment.waits) continue;
+    level.bytes = base_bytes + offset;
+    info->levels.push_back(level);
+  }
+}
+
 // Adds the levels that are complete: silent ones have no segment.
 Status AddLevels(Span<const uint8_t> refinement, uint64_t num_edges, StreamInfo* info) {
   LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadHeader> read, ReadRefinementHeader(refinement));
   if (!read.has_value()) return Status();
+  if (read->header.has_layers) {
+    AddLayers(refinement, read->size, num_edges, info);
+    return Status();
+  }
   StreamInfo::Level level = info->levels[0];
   size_t offset = read->size;
   level.bytes += read->size;

@@ -66,14 +66,16 @@ StatusOr<TriangleMesh> DecodeBase(const GatheredStream& stream, const DecodeLimi
   return std::move(base.mesh);
 }
 
-Status CheckCounts(const ProgressiveStream& announced, const DecodedMesh& decoded) {
-  const auto level = static_cast<size_t>(decoded.level);
-  if (level >= announced.vertex_counts.size() || announced.vertex_counts[level] != decoded.mesh.positions.size() ||
-      announced.triangle_counts[level] != decoded.mesh.triangles.size()) {
+// limited: the decoder was told to stop at a level, and states of a stream with quality layers are not those that the asset announces.
+Status CheckCounts(const ProgressiveStream& announced, const DecodedMesh& decoded, bool limited) {
+  const auto state = static_cast<size_t>(decoded.state);
+  if (decoded.has_layers && limited) return Status();
+  if (state >= announced.vertex_counts.size() || announced.vertex_counts[state] != decoded.mesh.positions.size() ||
+      announced.triangle_counts[state] != decoded.mesh.triangles.size()) {
     return InvalidData("level " + std::to_string(decoded.level) +
                        " of the stream does not have the size that the asset announces");
   }
-  const bool finest = level + 1 == announced.vertex_counts.size();
+  const bool finest = state + 1 == announced.vertex_counts.size();
   if (finest && !Near(BoundsOf(decoded.mesh.positions), {announced.min, announced.max})) {
     return InvalidData("the finest level does not have the bounds that the asset announces");
   }
@@ -100,14 +102,17 @@ StatusOr<ProgressiveSurface> ReadStream(const GltfDocument& document, const Stat
   decode.max_level = options.level;
   decode.limits = options.limits;
   LACERTA_ASSIGN_OR_RETURN(DecodedMesh decoded, DecodeMesh(stream.bytes, decode));
-  LACERTA_RETURN_IF_ERROR(CheckCounts(announced, decoded));
+  LACERTA_RETURN_IF_ERROR(CheckCounts(announced, decoded, options.level.has_value()));
   ProgressiveSurface surface;
   surface.level = decoded.level;
-  surface.num_levels = static_cast<int>(announced.vertex_counts.size()) - 1;
+  const int num_states = static_cast<int>(announced.vertex_counts.size()) - 1;
+  surface.num_levels = decoded.has_layers ? decoded.num_levels : num_states;
   surface.smooth_normals = announced.smooth_normals;
   surface.surface = std::move(decoded.mesh);
   const int wanted = std::min(options.level.value_or(surface.num_levels), surface.num_levels);
-  if (surface.level < wanted) {
+  if (decoded.has_layers && !decoded.refinement.ok()) {
+    surface.note = "decoded to quality " + std::to_string(decoded.state) + " of " + std::to_string(num_states) + ": " + decoded.refinement.message();
+  } else if (surface.level < wanted) {
     surface.note = "decoded to level " + std::to_string(surface.level) + " of " + std::to_string(surface.num_levels) +
                    ": " + (decoded.refinement.ok() ? "the rest of the data was cut off" : decoded.refinement.message());
   }

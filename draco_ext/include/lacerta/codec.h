@@ -120,7 +120,8 @@ struct DecodedMesh {
   TriangleMesh mesh;
   int level = 0;          // of `mesh`
   int num_levels = 0;     // refinement levels that the stream announces
-  int state = 0;          // as ProgressiveDecoder::state()
+  bool has_layers = false;  // quality layers: see EncodeOptions
+  int state = 0;            // as ProgressiveDecoder::state()
   // Ok, or why the refinement stopped before num_levels (a damaged or truncated segment): `mesh` is what came before it.
   Status refinement;
 };
