@@ -152,12 +152,13 @@ StatusOr<CodedStream> NormalMeshCandidate::Code(const CodingSlope& slope, Encode
 StatusOr<RefinementBytes> NormalMeshCandidate::Write(const CodedSurface& coded, const CodingSlope& slope) const {
   const BaseStepField base_step = base_.coding == BaseCoding::kCompact ? BaseStepField::kLeftOut : BaseStepField::kWritten;
   const BaseTags& tags = normal_mesh_.mesh.tags;
+  const Span<const Topology> topologies(target_.topologies.data(), coded.levels.size());
   if (slope.quality_layers > 1) {
     constexpr int kLayerPasses = 2;
     const std::vector<QualityLayer> layers = SplitIntoLayers(target_, detail_scales_, coded, slope.lambda, slope.quality_layers, kLayerPasses);
-    if (layers.size() > 1) return WriteLayers(target_, layers, tags, base_step);
+    if (layers.size() > 1)
+      return WriteLayers(coded.base, topologies, coded.steps, coded.levels, OrderSegments(target_, layers), tags, base_step);
   }
-  const Span<const Topology> topologies(target_.topologies.data(), coded.levels.size());
   return WriteRefinement(coded.base, topologies, coded.steps, coded.levels, tags, base_step);
 }
 

@@ -121,16 +121,6 @@ Status CheckSet(const char* name, int level, const std::vector<int32_t>& set, si
                          (step > 0 ? "; take a larger step" : " but no step"));
 }
 
-Status CheckLevel(int level, const Topology& t, const LevelSteps& steps, const QuantizedLevel& q) {
-  for (uint32_t e = 0; e < t.num_edges() && e < q.normal.size() && 2 * size_t{e} + 1 < q.tangential.size(); ++e) {
-    if (!t.is_copy(e) || (q.normal[e] == 0 && q.tangential[2 * size_t{e}] == 0 && q.tangential[2 * size_t{e} + 1] == 0)) continue;
-    return InvalidArgument("edge " + std::to_string(e) + " of level " + std::to_string(level) + " is a copy and has coefficients");
-  }
-  LACERTA_RETURN_IF_ERROR(CheckSet("normal", level, q.normal, t.num_edges(), steps.normal_step, steps.normal_bias));
-  return CheckSet("tangential", level, q.tangential, size_t{2} * t.num_edges(), steps.tangential_step,
-                  steps.tangential_bias);
-}
-
 // The header, where all that goes into the stream keeps to the rules of WriteRefinement; no byte where there is no level.
 StatusOr<Bytes> CheckAndWriteHeader(const BaseMesh& base, Span<const Topology> topologies, const std::vector<LevelSteps>& steps,
                                     const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step, bool has_layers) {
@@ -141,12 +131,22 @@ StatusOr<Bytes> CheckAndWriteHeader(const BaseMesh& base, Span<const Topology> t
   if (levels.empty()) return Bytes();
   LACERTA_ASSIGN_OR_RETURN(const Bytes coded_tags, WriteTags(base, tags, topologies[0]));
   for (size_t i = 0; i < levels.size(); ++i) {
-    LACERTA_RETURN_IF_ERROR(CheckLevel(static_cast<int>(i) + 1, topologies[i], steps[i], levels[i]));
+    LACERTA_RETURN_IF_ERROR(CheckCoefficients(static_cast<int>(i) + 1, topologies[i], steps[i], levels[i]));
   }
   return WriteHeader(base, steps, coded_tags, base_step, has_layers);
 }
 
 }  // namespace
+
+Status CheckCoefficients(int level, const Topology& t, const LevelSteps& steps, const QuantizedLevel& q) {
+  for (uint32_t e = 0; e < t.num_edges() && e < q.normal.size() && 2 * size_t{e} + 1 < q.tangential.size(); ++e) {
+    if (!t.is_copy(e) || (q.normal[e] == 0 && q.tangential[2 * size_t{e}] == 0 && q.tangential[2 * size_t{e} + 1] == 0)) continue;
+    return InvalidArgument("edge " + std::to_string(e) + " of level " + std::to_string(level) + " is a copy and has coefficients");
+  }
+  LACERTA_RETURN_IF_ERROR(CheckSet("normal", level, q.normal, t.num_edges(), steps.normal_step, steps.normal_bias));
+  return CheckSet("tangential", level, q.tangential, size_t{2} * t.num_edges(), steps.tangential_step,
+                  steps.tangential_bias);
+}
 
 StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_levels, const BaseTags& tags) {
   if (num_levels < 0 || num_levels > kMaxLevels) {

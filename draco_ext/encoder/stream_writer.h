@@ -48,6 +48,9 @@ StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, const std::vecto
                                           const std::vector<QuantizedLevel>& levels, const BaseTags& tags = {},
                                           BaseStepField base_step = BaseStepField::kWritten);
 
+// Fails with kInvalidArgument where the coefficients of a level do not have the shapes and magnitudes that WriteRefinement tells.
+Status CheckCoefficients(int level, const Topology& topology, const LevelSteps& steps, const QuantizedLevel& coefficients);
+
 // The header of a refinement with quality layers, for the same arguments: steps and levels are those of the last layer.
 StatusOr<Bytes> WriteLayeredHeader(const BaseMesh& base, Span<const Topology> topologies, const std::vector<LevelSteps>& steps,
                                    const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step);

@@ -86,7 +86,7 @@ def read_steps(reader, num_levels):
 def read_header(reader, base):
     assert reader.take(3) == b"LAC" and reader.unsigned(1) == 1
     counts = reader.unsigned(1)
-    assert counts < 64 and 1 <= counts & 15 <= 12
+    assert counts < 128 and 1 <= counts & 15 <= 12
     if counts & 32:
         assert step_value(reader.unsigned(2)) == base["step"]
     assert reader.unsigned(2) == base_checksum(base)
@@ -98,13 +98,13 @@ def read_header(reader, base):
     tags = reader.take(length)
     end = reader.at
     assert reader.unsigned(2) == zlib.crc32(reader.data[:end]) & 0xFFFF
-    return levels, tags
+    return levels, tags, counts & 64 != 0
 
 
-def read_segment(reader, level):
+def read_segment(reader, what):
     length, checksum = reader.varint(), reader.unsigned(2)
     payload = reader.take(length)
-    assert zlib.crc32(bytes([level]) + payload) & 0xFFFF == checksum
+    assert zlib.crc32(bytes([what]) + payload) & 0xFFFF == checksum
     return payload
 
 
@@ -415,6 +415,81 @@ class CoefficientDecoder:
                 parents = forecasts(*coarse, bits) if coarse else None
                 self.coarse[name] = (level, decode_set(level, parents, decode_edge), bits)
         return normal, tangential
+
+
+# --- Layers ---
+
+class LayeredLevel:
+    def __init__(self, level, sets):
+        self.level, self.sets = level, sets
+        self.shift = None  # until its first segment
+        self.normal, self.tangential = [0] * len(level.edges), [0] * 2 * len(level.edges)
+        self.zero = [SetModels(NORMAL_PRIORS), SetModels(TANGENTIAL_PRIORS), SetModels(TANGENTIAL_PRIORS)]
+        self.told = [SetModels(NORMAL_PRIORS), SetModels(TANGENTIAL_PRIORS), SetModels(TANGENTIAL_PRIORS)]
+        for models in self.told:
+            even = SetModels.__new__(SetModels)
+            even.nonzero = [[Model() for _ in row] for row in models.nonzero]
+            even.unexpected_sign = [Model() for _ in models.unexpected_sign]
+            even.larger = [[Model() for _ in row] for row in models.larger]
+            models.__dict__.update(even.__dict__)
+
+    def step_bits(self, name):
+        bits = self.sets[name][0]
+        return bits + 128 * self.shift if bits and self.shift is not None else 0
+
+    def counted(self, name):
+        """What counts for contexts, per edge."""
+        values = self.normal
+        if name == "tangential":
+            values = [abs(a) + abs(b) for a, b in zip(self.tangential[::2], self.tangential[1::2])]
+        return [limit(v, -4096, 4096) for v in values]
+
+
+def take_layer_segment(reader, levels, first_decoder):
+    what = reader.unsigned(1)
+    number, shift = what & 15, what >> 4 & 7
+    payload = read_segment(reader, what)
+    at = levels[number - 1]
+    coarse = {}
+    for name in ("normal", "tangential"):
+        if number > 1 and levels[number - 2].step_bits(name):
+            below = levels[number - 2]
+            coarse[name] = (below.level, below.counted(name), below.step_bits(name))
+    drop = None if at.shift is None else at.shift - shift
+    assert drop is None or drop > 0
+    at.shift = shift
+    if drop is None:
+        first_decoder.coarse = coarse
+        sets = {name: (at.step_bits(name),) for name in at.sets}
+        at.normal, at.tangential = first_decoder.decode(at.level, sets, payload)
+        return
+    decoder = RangeDecoder(payload)
+    normal, tangential = [0] * len(at.normal), [0] * len(at.tangential)
+
+    def refined(k, known, activity, companion, sign_class, expect_negative):
+        if known == 0:
+            return decode_coefficient(decoder, at.zero[k], activity, companion, sign_class, expect_negative)
+        m = abs(known)
+        return known * 2 ** drop + decode_coefficient(decoder, at.told[k], drop, min(m, 3) - 1, 1 if m == 1 else 2, known < 0)
+
+    def normal_edge(e, activity, sign_class, expect_negative):
+        around = sum(1 for f in at.level.faces(e) for x in at.level.face_edges[f] if x != e and at.normal[x] != 0)
+        companion = min(around, 2) + 3 * at.level.on_curve[e]
+        normal[e] = refined(0, at.normal[e], activity, companion, sign_class, expect_negative)
+        return normal[e]
+
+    def tangential_edge(e, activity, _sign_class, _expect_negative):
+        n, curve = abs(normal[e]), 3 * at.level.on_curve[e]
+        first = refined(1, at.tangential[2 * e], activity, curve + (0 if n == 0 else 1 if n < 3 else 2), 0, False)
+        second = refined(2, at.tangential[2 * e + 1], activity, curve + (2 if first else 1 if n else 0), 0, False)
+        tangential[2 * e:2 * e + 2] = first, second
+        return abs(first) + abs(second)
+
+    for name, decode_edge in (("normal", normal_edge), ("tangential", tangential_edge)):
+        bits = at.step_bits(name)
+        if bits:
+            decode_set(at.level, forecasts(*coarse[name], bits) if name in coarse else None, decode_edge)
+    at.normal, at.tangential = normal, tangential
 
 
 # --- Dequantization, prediction, local frames ---
@@ -890,8 +965,19 @@ def decode(base, data):
     positions = [[value * base["step"] for value in point] for point in base["lattice"]]
     coefficients = []
     coefficient_decoder = CoefficientDecoder()
-    steps, payload = read_header(reader, base)
+    steps, payload, has_layers = read_header(reader, base)
     level, tags = tagged_level(base, payload)
+    if has_layers:
+        levels = []
+        for sets in steps:
+            levels.append(LayeredLevel(level, sets))
+            level = refine(level)
+        while any(at.shift != 0 and (at.sets["normal"][0] or at.sets["tangential"][0]) for at in levels):
+            take_layer_segment(reader, levels, coefficient_decoder)
+        for at in levels:
+            synthesize(at.level, at.sets, at.normal, at.tangential, positions)
+            coefficients.append({"normal": at.normal, "tangential": at.tangential})
+        return tags, coefficients, positions
     for number, sets in enumerate(steps, 1):
         silent = not sets["normal"][0] and not sets["tangential"][0]
         payload = b"" if silent else read_segment(reader, number)

@@ -20,6 +20,7 @@ namespace lacerta {
 namespace {
 
 using ::lacerta::testing::Coefficients;
+using ::lacerta::testing::InLayers;
 using ::lacerta::testing::LawfulSteps;
 using ::lacerta::testing::Octahedron;
 using ::lacerta::testing::OctahedronBesideStillSheets;
@@ -39,6 +40,7 @@ struct Golden {
   uint32_t seed;
   double scale;         // of the coefficients of level 1
   bool lawful = false;  // steps of the default mode, level 2 silent, the base step left out
+  bool layered = false;  // in three rounds
 };
 
 std::string PathOf(const Golden& golden, const char* extension) {
@@ -110,7 +112,9 @@ TEST_P(GoldenTest, DecodesAndIsWrittenAgain) {
     Silence(2, &c);
   }
   const BaseStepField base_step = golden.lawful ? BaseStepField::kLeftOut : BaseStepField::kWritten;
-  const Bytes written = WriteRefinement(base, c.steps, c.levels, tags, base_step).value().bytes;
+  const std::vector<Topology> topologies = BuildTopologies(base, golden.num_levels, tags).value();
+  const Bytes written = golden.layered ? WriteLayers(base, topologies, c.steps, c.levels, InLayers(c), tags, base_step).value().bytes
+                                       : WriteRefinement(base, c.steps, c.levels, tags, base_step).value().bytes;
   const RefinementResult again = DecodeRefinement(base, written, {}).value();
   if (std::getenv("LACERTA_REGENERATE_GOLDEN") != nullptr) {
     WriteFile(PathOf(golden, ".lac"), std::string(written.begin(), written.end()));
@@ -138,7 +142,10 @@ INSTANTIATE_TEST_SUITE_P(Version1, GoldenTest,
                                            Golden{"square_corners", SquareWithCorners(), 3, 27, 3.0},
                                            Golden{"octahedron_beside_still_sheets", OctahedronBesideStillSheets(), 3, 28, 4.0},
                                            Golden{"three_sheets_joined", ThreeSheets(), 3, 29, 3.0},
-                                           Golden{"octahedron_silent_level", {Octahedron()}, 3, 30, 4.0, true}),
+                                           Golden{"octahedron_silent_level", {Octahedron()}, 3, 30, 4.0, true},
+                                           Golden{"torus_layers", {Torus(6, 5)}, 3, 31, 9.0, false, true},
+                                           Golden{"octahedron_layers_silent_level", {Octahedron()}, 4, 32, 12.0, true, true},
+                                           Golden{"three_sheets_layers", ThreeSheets(), 3, 33, 6.0, false, true}),
                          [](const auto& golden) { return std::string(golden.param.name); });
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "common/coefficient_sets.h"
 #include "common/step_forecast.h"
 #include "common/subdivision.h"
+#include "encoder/layer_writer.h"
 #include "lacerta/decoder.h"
 
 namespace lacerta::testing {
@@ -136,6 +137,24 @@ inline std::vector<LevelSteps> LawfulSteps(size_t num_levels) {
     steps.push_back({normal, 2 * normal, 0, 0});
   }
   return steps;
+}
+
+// The coefficients in three rounds: levels 1 and 2 on steps 8 times larger, then all on steps twice as large, then as they are. In the
+// second and third round level 1 waits for level 2.
+inline std::vector<LayerValues> InLayers(const Coefficients& c) {
+  std::vector<LayerValues> segments;
+  for (const int shift : {3, 1, 0}) {
+    const size_t num_levels = shift == 3 ? std::min<size_t>(2, c.levels.size()) : c.levels.size();
+    for (size_t i = 0; i < num_levels; ++i) {
+      if (c.steps[i].is_silent()) continue;
+      QuantizedLevel values = c.levels[i];
+      for (auto* set : {&values.normal, &values.tangential}) {
+        for (int32_t& q : *set) q = q < 0 ? -(-q >> shift) : q >> shift;
+      }
+      segments.push_back({{static_cast<int>(i) + 1, shift, shift < 3 && i == 0 && c.levels.size() > 1}, std::move(values)});
+    }
+  }
+  return segments;
 }
 
 // Without coefficients in one of the levels.
