@@ -34,7 +34,7 @@ struct LayerState {
   std::vector<LayeredLevel> levels;  // of levels 1, 2, ...
 };
 
-// The steps of the header times 2^shift, where that is legal for steps (is_legal).
+// Steps times 2^shift, and whether these are steps that a stream can have.
 LevelSteps ShiftedSteps(const LevelSteps& steps, int shift);
 bool CanShift(const LevelSteps& steps, int shift);
 

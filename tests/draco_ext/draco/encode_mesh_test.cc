@@ -173,6 +173,37 @@ TEST(EncodeMeshTest, EveryPrefixDecodesToItsLastCompleteLevel) {
   }
 }
 
+TEST(EncodeMeshTest, StatesOfLayersComeNearerAndNearer) {
+  for (const StreamForm form : {StreamForm::kDraco, StreamForm::kCustom}) {
+    EncodeOptions options = OptionsFor(Kind::kPsnr, 54, form);
+    options.quality_layers = 3;
+    const EncodedMesh encoded = EncodeOrDie(Scan(), options);
+    EXPECT_GE(encoded.report.levels.back().psnr, 54);
+    EXPECT_LT(encoded.report.levels.back().psnr, 54.3);
+    ASSERT_EQ(encoded.part_sizes.size(), encoded.report.levels.size());
+    const bool is_layered = DecodeMesh(encoded.stream, {}).value().has_layers;
+    EXPECT_TRUE(is_layered);
+    size_t end = 0;
+    for (size_t i = 0; i < encoded.part_sizes.size(); ++i) {
+      end += encoded.part_sizes[i];
+      const Bytes prefix(encoded.stream.begin(), encoded.stream.begin() + static_cast<std::ptrdiff_t>(end));
+      const DecodedMesh decoded = DecodeMesh(prefix, {}).value();
+      const LevelReport& told = encoded.report.levels[i];
+      EXPECT_EQ(decoded.state, static_cast<int>(i));
+      EXPECT_EQ(decoded.mesh.positions.size(), told.vertices);
+      EXPECT_EQ(decoded.mesh.triangles.size(), told.triangles);
+      EXPECT_EQ(end, told.bytes);
+      EXPECT_GE(told.psnr, encoded.report.levels[i > 0 ? i - 1 : 0].psnr);
+    }
+    EXPECT_EQ(end, encoded.stream.size());
+  }
+  EncodeOptions options = OptionsFor(Kind::kPsnr, 54);
+  for (const int layers : {0, 9}) {
+    options.quality_layers = layers;
+    EXPECT_EQ(EncodeMesh(Scan(), options).status().code(), StatusCode::kInvalidArgument);
+  }
+}
+
 TEST(EncodeMeshTest, SameBytesOnOneThreadAndOnTwo) {
   const EncodeOptions options = OptionsFor(Kind::kPsnr, 50);
   std::vector<Bytes> streams;
