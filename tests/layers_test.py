@@ -13,6 +13,7 @@ LIBRARIES = {
     "tbb": {"geometry", "remesh", "encoder", "draco"},
     "draco": {"draco", "gltf"},
     "nlohmann": {"gltf", "plugin"},
+    "meshoptimizer.h": {"gltf"},
     "tiny_gltf.h": {"gltf", "samples"},
     "CLI": {"plugin"},
     "unistd.h": {"plugin"},

@@ -21,8 +21,10 @@ void VisitViewReferences(Json& json, const std::function<void(Json&)>& visit) {
       if (key == "extras") continue;
       if (key == "bufferView") {
         visit(value);
-      } else if (Json* data = key == "LACERTA_mesh_progressive" ? Find(value, "data") : nullptr; data != nullptr) {
-        visit(*data);
+      } else if (key == "LACERTA_mesh_progressive") {
+        for (const char* member : {"data", "refinements"}) {
+          if (Json* view = Find(value, member); view != nullptr) visit(*view);
+        }
       } else {
         VisitViewReferences(value, visit);
       }
@@ -63,6 +65,17 @@ void AddBounds(const AccessorData& data, Json* accessor) {
   }
   (*accessor)["min"] = std::move(min);
   (*accessor)["max"] = std::move(max);
+}
+
+std::vector<uint32_t> NonZeroElements(const AccessorData& data) {
+  const size_t size = data.components * ComponentSize(data.type);
+  std::vector<uint32_t> elements;
+  for (uint64_t i = 0; i < data.count; ++i) {
+    const auto begin = data.bytes.begin() + static_cast<std::ptrdiff_t>(i * size);
+    const bool zero = std::all_of(begin, begin + static_cast<std::ptrdiff_t>(size), [](uint8_t b) { return b == 0; });
+    if (!zero) elements.push_back(static_cast<uint32_t>(i));
+  }
+  return elements;
 }
 
 void ShrinkView(uint64_t index, GltfDocument* document) {
@@ -140,6 +153,37 @@ Json MakeAccessor(const AccessorData& data, AccessorUse use, bool bounds, GltfDo
   view_json["target"] = use == AccessorUse::kAttribute ? kArrayBuffer : kElementArrayBuffer;
   Json accessor = {{"bufferView", view}};
   accessor.update(DescribeAccessor(data, bounds));
+  return accessor;
+}
+
+bool SparseIsSmaller(const AccessorData& data) {
+  const size_t size = data.components * ComponentSize(data.type);
+  return NonZeroElements(data).size() * (size + sizeof(uint32_t)) < static_cast<size_t>(data.count) * size;
+}
+
+Json MakeSparseAccessor(const AccessorData& data, bool bounds, GltfDocument* document) {
+  const std::vector<uint32_t> elements = NonZeroElements(data);
+  Json accessor = DescribeAccessor(data, bounds);
+  if (elements.empty()) return accessor;  // zeros are what an accessor without data holds
+  const bool narrow = data.count <= uint64_t{std::numeric_limits<uint16_t>::max()} + 1;
+  const size_t size = data.components * ComponentSize(data.type);
+  Bytes indices;
+  Bytes values;
+  for (const uint32_t element : elements) {
+    for (size_t byte = 0; byte < (narrow ? 2u : 4u); ++byte) indices.push_back(static_cast<uint8_t>(element >> (8 * byte)));
+    const auto begin = data.bytes.begin() + static_cast<std::ptrdiff_t>(element * size);
+    values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(size));
+  }
+  const auto add_view = [&](Bytes bytes) {
+    const uint64_t length = bytes.size();
+    return AddBufferView(AddBuffer(std::move(bytes), document), 0, length, document);
+  };
+  const uint64_t index_view = add_view(std::move(indices));
+  const uint64_t value_view = add_view(std::move(values));
+  const ComponentType type = narrow ? ComponentType::kUint16 : ComponentType::kUint32;
+  accessor["sparse"] = {{"count", elements.size()},
+                        {"indices", {{"bufferView", index_view}, {"componentType", static_cast<uint32_t>(type)}}},
+                        {"values", {{"bufferView", value_view}}}};
   return accessor;
 }
 

@@ -22,6 +22,10 @@ enum class AccessorUse { kAttribute, kIndices };
 
 // The JSON of an accessor over `data` with a buffer and a view of its own; min and max are given where `bounds` is set.
 Json MakeAccessor(const AccessorData& data, AccessorUse use, bool bounds, GltfDocument* document);
+// The same, but with the elements that are not zero alone, and no data for the others. The data may hold 2^32 elements at
+// most.
+Json MakeSparseAccessor(const AccessorData& data, bool bounds, GltfDocument* document);
+bool SparseIsSmaller(const AccessorData& data);
 // The same without any data: what a compressed primitive shows.
 Json DescribeAccessor(const AccessorData& data, bool bounds);
 

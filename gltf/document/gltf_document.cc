@@ -4,6 +4,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "document/meshopt.h"
 #include "document/uri.h"
 
 namespace lacerta {
@@ -51,7 +52,24 @@ StatusOr<Chunks> SplitGlb(Span<const uint8_t> bytes) {
   return chunks;
 }
 
-StatusOr<Bytes> LoadBuffer(const Json& buffer, bool first, const Chunks& chunks, const std::string& folder) {
+// Whether buffer `index` holds refinements alone: the asset is whole without them.
+bool IsDispensable(const Json& json, uint64_t index) {
+  const Json* extensions = Find(json, "extensions");
+  const Json* progressive = extensions == nullptr ? nullptr : Find(*extensions, "LACERTA_mesh_progressive");
+  const std::optional<uint64_t> refinements =
+      progressive == nullptr ? std::nullopt : AsIndex(Find(*progressive, "refinements"));
+  if (!refinements.has_value()) return false;
+  bool found = false;
+  for (uint64_t v = 0; v < ArraySize(json, "bufferViews"); ++v) {
+    if (AsIndex(Find(*FindElement(json, "bufferViews", v), "buffer")) != index) continue;
+    if (v != *refinements) return false;
+    found = true;
+  }
+  return found;
+}
+
+StatusOr<Bytes> LoadBuffer(const Json& buffer, bool first, bool dispensable, const Chunks& chunks,
+                           const std::string& folder) {
   LACERTA_ASSIGN_OR_RETURN(const uint64_t length, GetIndex(buffer, "byteLength"));
   const Json* uri = Find(buffer, "uri");
   if (uri == nullptr) {
@@ -59,7 +77,10 @@ StatusOr<Bytes> LoadBuffer(const Json& buffer, bool first, const Chunks& chunks,
     return Bytes(chunks.bin.begin(), chunks.bin.begin() + std::min<uint64_t>(length, chunks.bin.size()));
   }
   if (!uri->is_string()) return InvalidData("\"uri\" is no string");
-  LACERTA_ASSIGN_OR_RETURN(Bytes bytes, LoadUri(uri->get_ref<const std::string&>(), folder));
+  StatusOr<Bytes> loaded = LoadUri(uri->get_ref<const std::string&>(), folder);
+  if (dispensable && loaded.status().code() == StatusCode::kNotFound) return Bytes();
+  LACERTA_ASSIGN_OR_RETURN(Bytes bytes, std::move(loaded));
+  if (bytes.size() < length && dispensable) return bytes;
   if (bytes.size() < length) {
     return InvalidData("announces " + std::to_string(length) + " bytes, but its data has " +
                        std::to_string(bytes.size()));
@@ -111,12 +132,6 @@ Status CheckReadable(const Json& json) {
   const Json* asset = Find(json, "asset");
   const std::string version = asset == nullptr ? "" : AsString(Find(*asset, "version"));
   if (version.substr(0, 2) != "2.") return Unsupported("glTF version \"" + version + "\"; only 2.x is read");
-  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
-    if (UsesExtension(json, name)) {
-      return Unsupported(std::string("the asset is compressed with ") + name +
-                         ", which loses what a second compression would need; start from the uncompressed asset");
-    }
-  }
   return Status();
 }
 
@@ -138,10 +153,12 @@ StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& f
   GltfDocument document;
   LACERTA_ASSIGN_OR_RETURN(document.json, ParseGltfJson(chunks.json));
   for (uint64_t i = 0; i < ArraySize(document.json, "buffers"); ++i) {
-    StatusOr<Bytes> buffer = LoadBuffer(*FindElement(document.json, "buffers", i), i == 0, chunks, folder);
+    StatusOr<Bytes> buffer = LoadBuffer(*FindElement(document.json, "buffers", i), i == 0,
+                                        IsDispensable(document.json, i), chunks, folder);
     if (!buffer.ok()) return buffer.status().WithContext("buffer " + std::to_string(i));
     document.buffers.push_back(std::move(buffer).value());
   }
+  LACERTA_RETURN_IF_ERROR(DecodeMeshoptViews(&document));
   return document;
 }
 

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
+#include <utility>
+
+#include "document/buffer_edit.h"
 
 namespace lacerta {
 namespace {
@@ -92,6 +96,10 @@ StatusOr<Progressive> ParseUnnamed(const Json& extension) {
   }
   Progressive progressive;
   LACERTA_ASSIGN_OR_RETURN(progressive.data, GetIndex(extension, "data"));
+  if (const Json* refinements = Find(extension, "refinements"); refinements != nullptr) {
+    LACERTA_ASSIGN_OR_RETURN(const uint64_t view, GetIndex(extension, "refinements"));
+    progressive.refinements = view;
+  }
   const Json* segments = Find(extension, "segments");
   if (segments == nullptr) return InvalidData("\"segments\" is missing");
   LACERTA_ASSIGN_OR_RETURN(const std::vector<uint64_t> streams, ParseIndices(*segments, "stream"));
@@ -105,6 +113,34 @@ StatusOr<Progressive> ParseUnnamed(const Json& extension) {
   }
   LACERTA_RETURN_IF_ERROR(CheckSegments(progressive));
   return progressive;
+}
+
+// The bytes of all segments in one or two pieces.
+struct Transmitted {
+  Span<const uint8_t> data, refinements;
+
+  void Append(uint64_t begin, uint64_t end, Bytes* bytes) const {
+    const auto append = [&](Span<const uint8_t> piece, uint64_t offset) {
+      const uint64_t from = std::clamp<uint64_t>(begin, offset, offset + piece.size()) - offset;
+      const uint64_t to = std::clamp<uint64_t>(end, offset, offset + piece.size()) - offset;
+      if (from < to) bytes->insert(bytes->end(), piece.begin() + from, piece.begin() + to);
+    };
+    append(data, 0);
+    append(refinements, data.size());
+  }
+  uint64_t size() const { return data.size() + refinements.size(); }
+};
+
+StatusOr<Transmitted> FindTransmitted(const GltfDocument& document, const Progressive& progressive) {
+  Transmitted transmitted;
+  LACERTA_ASSIGN_OR_RETURN(transmitted.data, AvailableViewBytes(document, progressive.data));
+  if (!progressive.refinements.has_value()) return transmitted;
+  // What is missing of `data` would shift the rest.
+  const uint64_t announced =
+      AsIndex(Find(*FindElement(document.json, "bufferViews", progressive.data), "byteLength")).value_or(0);
+  if (transmitted.data.size() < announced) return transmitted;
+  LACERTA_ASSIGN_OR_RETURN(transmitted.refinements, AvailableViewBytes(document, *progressive.refinements));
+  return transmitted;
 }
 
 }  // namespace
@@ -136,14 +172,49 @@ Json FormatProgressive(const Progressive& progressive) {
     if (stream.smooth_normals) json["normals"] = "smooth";
     streams.push_back(std::move(json));
   }
-  return {{"version", kProgressiveVersion},
-          {"data", progressive.data},
-          {"segments", std::move(segments)},
-          {"streams", std::move(streams)}};
+  Json json = {{"version", kProgressiveVersion}, {"data", progressive.data}};
+  if (progressive.refinements.has_value()) json["refinements"] = *progressive.refinements;
+  json["segments"] = std::move(segments);
+  json["streams"] = std::move(streams);
+  return json;
+}
+
+StatusOr<Bytes> TransmittedBytes(const GltfDocument& document, const Progressive& progressive) {
+  LACERTA_ASSIGN_OR_RETURN(const Transmitted transmitted, FindTransmitted(document, progressive));
+  Bytes bytes(transmitted.data.begin(), transmitted.data.end());
+  bytes.insert(bytes.end(), transmitted.refinements.begin(), transmitted.refinements.end());
+  return bytes;
+}
+
+Status ReplaceTransmittedBytes(Bytes data, Progressive* progressive, GltfDocument* document) {
+  Json& views = document->json["bufferViews"];
+  Json& old = views[static_cast<size_t>(progressive->data)];
+  const uint64_t old_buffer = AsIndex(Find(old, "buffer")).value_or(0);
+  const uint64_t old_begin = AsIndex(Find(old, "byteOffset")).value_or(0);
+  const uint64_t old_end = old_begin + AsIndex(Find(old, "byteLength")).value_or(0);
+  const uint64_t length = data.size();
+  const uint64_t buffer = AddBuffer(std::move(data), document);
+  for (Json& view : views) {
+    const uint64_t offset = AsIndex(Find(view, "byteOffset")).value_or(0);
+    const uint64_t end = offset + AsIndex(Find(view, "byteLength")).value_or(0);
+    if (AsIndex(Find(view, "buffer")) != old_buffer || offset < old_begin || end > old_end || &view == &old) continue;
+    if (end - old_begin > length) return InvalidData("a bufferView shows a part of the refinements");
+    view["buffer"] = buffer;
+    view["byteOffset"] = offset - old_begin;
+  }
+  old["buffer"] = buffer;
+  old["byteOffset"] = 0;
+  old["byteLength"] = length;
+  std::set<uint64_t> unused;
+  if (progressive->refinements.has_value()) unused.insert(*progressive->refinements);
+  progressive->refinements.reset();
+  document->json["extensions"][kProgressiveName] = FormatProgressive(*progressive);
+  DropUnusedViews(unused, document);
+  return Status();
 }
 
 StatusOr<GatheredStream> GatherStream(const GltfDocument& document, const Progressive& progressive, uint64_t stream) {
-  LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> data, AvailableViewBytes(document, progressive.data));
+  LACERTA_ASSIGN_OR_RETURN(const Transmitted data, FindTransmitted(document, progressive));
   GatheredStream gathered;
   uint64_t offset = 0;
   bool is_base = true;
@@ -151,7 +222,7 @@ StatusOr<GatheredStream> GatherStream(const GltfDocument& document, const Progre
     if (segment.stream == stream && gathered.complete) {
       const uint64_t begin = std::min<uint64_t>(offset, data.size());
       const uint64_t length = std::min<uint64_t>(segment.length, data.size() - begin);
-      gathered.bytes.insert(gathered.bytes.end(), data.begin() + begin, data.begin() + begin + length);
+      data.Append(begin, begin + length, &gathered.bytes);
       gathered.complete = length == segment.length;
       if (is_base) {
         gathered.base_offset = begin;

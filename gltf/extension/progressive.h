@@ -3,6 +3,7 @@
 #define LACERTA_EXTENSION_PROGRESSIVE_H_
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "document/gltf_document.h"
@@ -29,7 +30,8 @@ struct Segment {
 };
 
 struct Progressive {
-  uint64_t data = 0;              // bufferView of all segments
+  uint64_t data = 0;              // bufferView of all segments, or of the bases
+  std::optional<uint64_t> refinements;  // bufferView that goes on where `data` ends, in a file of its own
   std::vector<Segment> segments;  // in the order of their bytes
   std::vector<ProgressiveStream> streams;
 };
@@ -38,6 +40,13 @@ struct Progressive {
 // segments as levels. Fails with kNotFound where there is none, kUnsupported for another version, kInvalidData.
 StatusOr<Progressive> ParseProgressive(const GltfDocument& document);
 Json FormatProgressive(const Progressive& progressive);
+
+// The bytes of all segments, as far as they are there. Fails where a bufferView is not there.
+StatusOr<Bytes> TransmittedBytes(const GltfDocument& document, const Progressive& progressive);
+
+// Puts `data`, which has to begin with the same bases, in the place of all that TransmittedBytes gave, in one bufferView.
+// The bufferViews of fallbacks that are parts of it follow. Writes `progressive` to the document.
+Status ReplaceTransmittedBytes(Bytes data, Progressive* progressive, GltfDocument* document);
 
 // What is there of one stream: `bytes` may end early when the data was trimmed.
 struct GatheredStream {

@@ -92,10 +92,14 @@ void AccessorPool::ReleaseOne(const Json& reference, GltfDocument* document) {
   free_.insert(*index);
 }
 
-void AccessorPool::Release(const Json& primitive, GltfDocument* document) {
-  const Json* attributes = Find(primitive, "attributes");
-  if (attributes != nullptr && attributes->is_object()) {
+void AccessorPool::Release(const Json& primitive, bool with_targets, GltfDocument* document) {
+  const auto release_all = [&](const Json* attributes) {
+    if (attributes == nullptr || !attributes->is_object()) return;
     for (const Json& reference : *attributes) ReleaseOne(reference, document);
+  };
+  release_all(Find(primitive, "attributes"));
+  for (uint64_t t = 0; with_targets && t < ArraySize(primitive, "targets"); ++t) {
+    release_all(FindElement(primitive, "targets", t));
   }
   if (const Json* indices = Find(primitive, "indices"); indices != nullptr) ReleaseOne(*indices, document);
 }

@@ -18,8 +18,9 @@ class AccessorPool {
   // Counts who refers to which accessor: `geometries` (one primitive of each), skins, animations and extensions.
   AccessorPool(const GltfDocument& document, const std::vector<Place>& geometries);
 
-  // The geometry of `primitive` needs its accessors no more. Call once per geometry.
-  void Release(const Json& primitive, GltfDocument* document);
+  // The geometry of `primitive` needs its accessors no more, those of its morph targets included if asked. Call once per
+  // geometry.
+  void Release(const Json& primitive, bool with_targets, GltfDocument* document);
 
   // Puts `accessor` at the index `preferred` if that is free, else at another free one, else at the end; returns where.
   uint64_t Put(Json accessor, std::optional<uint64_t> preferred, GltfDocument* document);

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "document/buffer_edit.h"
-#include "document/draco_primitive.h"
+#include "document/draco_encode.h"
 #include "document/gltf_document.h"
 #include "extension/progressive.h"
 #include "lacerta/gltf.h"
@@ -17,11 +17,12 @@ namespace {
 void StoreDraco(const PrimitivePlan& plan, AccessorPool* pool, GltfDocument* document) {
   const DracoEncoded& encoded = *plan.draco;
   NewGeometry geometry = DescribedGeometry(encoded.decoded);
+  geometry.targets = TargetAccessors(plan.targets, plan.places[0], document);
   Json ids = Json::object();
   for (const DracoAttributeId& id : encoded.ids) ids[id.name] = id.id;
   const uint64_t view = AddBufferView(AddBuffer(encoded.bytes, document), 0, encoded.bytes.size(), document);
   geometry.extensions[kDracoName] = {{"bufferView", view}, {"attributes", std::move(ids)}};
-  ReplaceGeometry(plan.places, std::move(geometry), pool, document);
+  ReplaceGeometry(plan.geometries, plan.places, std::move(geometry), pool, document);
 }
 
 // All progressive streams of an asset in transmission order.
@@ -29,6 +30,7 @@ struct Transmission {
   Progressive progressive;
   Bytes data;
   std::vector<uint64_t> base_offsets;  // per stream, in `data`
+  uint64_t bases_end = 0;              // in `data`: bases come first
 };
 
 StatusOr<Transmission> Transmit(const std::vector<const PrimitivePlan*>& plans) {
@@ -62,11 +64,13 @@ StatusOr<Transmission> Transmit(const std::vector<const PrimitivePlan*>& plans) 
   result.base_offsets.resize(plans.size());
   for (const Segment& segment : result.progressive.segments) {
     const auto s = static_cast<size_t>(segment.stream);
-    if (taken[s] == 0) result.base_offsets[s] = result.data.size();
+    const bool is_base = taken[s] == 0;
+    if (is_base) result.base_offsets[s] = result.data.size();
     const Bytes& stream = plans[s]->progressive->stream;
     const auto begin = stream.begin() + static_cast<std::ptrdiff_t>(taken[s]);
     result.data.insert(result.data.end(), begin, begin + static_cast<std::ptrdiff_t>(segment.length));
     taken[s] += static_cast<size_t>(segment.length);
+    if (is_base) result.bases_end = result.data.size();
   }
   return result;
 }
@@ -91,8 +95,9 @@ StatusOr<NewGeometry> DracoFallback(const EncodedMesh& encoded, uint64_t data_bu
   return geometry;
 }
 
-Status StoreProgressive(const std::vector<const PrimitivePlan*>& plans, Fallback fallback, AccessorPool* pool,
-                        GltfDocument* document) {
+// `external` takes what follows the bases, unless it is null.
+Status StoreProgressive(const std::vector<const PrimitivePlan*>& plans, Fallback fallback, Bytes* external,
+                        AccessorPool* pool, GltfDocument* document) {
   LACERTA_ASSIGN_OR_RETURN(Transmission transmission, Transmit(plans));
   std::vector<NewGeometry> geometries;
   if (fallback != Fallback::kDraco) {
@@ -102,6 +107,11 @@ Status StoreProgressive(const std::vector<const PrimitivePlan*>& plans, Fallback
                                DecodeLevel(plan->progressive->stream, plain ? std::optional<int>(0) : std::nullopt));
       geometries.push_back(plain ? PlainGeometry(mesh, plan->smooth_normals, document) : DescribedGeometry(mesh));
     }
+  }
+  if (external != nullptr) {
+    const auto bases_end = transmission.data.begin() + static_cast<std::ptrdiff_t>(transmission.bases_end);
+    external->assign(bases_end, transmission.data.end());
+    transmission.data.erase(bases_end, transmission.data.end());
   }
   // The last buffer, so that a file cut short loses refinements only.
   const uint64_t length = transmission.data.size();
@@ -114,10 +124,18 @@ Status StoreProgressive(const std::vector<const PrimitivePlan*>& plans, Fallback
   }
   for (size_t s = 0; s < plans.size(); ++s) {
     geometries[s].extensions[kProgressiveName] = {{"stream", s}, {"group", 0}};
-    ReplaceGeometry(plans[s]->places, std::move(geometries[s]), pool, document);
+    ReplaceGeometry(plans[s]->geometries, plans[s]->places, std::move(geometries[s]), pool, document);
   }
   document->json["extensions"][kProgressiveName] = FormatProgressive(transmission.progressive);
   return Status();
+}
+
+// A buffer after the one of the GLB, with all bytes in a file of its own.
+void ReferToExternal(const Bytes& external, const std::string& uri, GltfDocument* document) {
+  const uint64_t buffer = AddBuffer(external, document);
+  document->json["buffers"][static_cast<size_t>(buffer)]["uri"] = uri;
+  const uint64_t view = AddBufferView(buffer, 0, external.size(), document);
+  document->json["extensions"][kProgressiveName]["refinements"] = view;
 }
 
 void DeclareExtensions(Fallback fallback, bool progressive, GltfDocument* document) {
@@ -138,7 +156,9 @@ StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& opti
   LACERTA_ASSIGN_OR_RETURN(const std::vector<PrimitivePlan> plans, PlanPrimitives(document, options));
   std::set<uint64_t> unused_views = DracoViews(document);
   std::vector<Place> geometries;
-  for (const PrimitivePlan& plan : plans) geometries.push_back(plan.places[0]);
+  for (const PrimitivePlan& plan : plans) {
+    geometries.insert(geometries.end(), plan.geometries.begin(), plan.geometries.end());
+  }
   AccessorPool pool(document, geometries);
   std::vector<const PrimitivePlan*> progressive;
   PackResult result;
@@ -147,11 +167,14 @@ StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& opti
     if (plan.progressive.has_value()) progressive.push_back(&plan);
     result.report.primitives.push_back(plan.report);
   }
-  if (!progressive.empty()) LACERTA_RETURN_IF_ERROR(StoreProgressive(progressive, options.fallback, &pool, &document));
+  if (!progressive.empty()) LACERTA_RETURN_IF_ERROR(StoreProgressive(progressive, options.fallback,
+                                                                  options.external_uri.empty() ? nullptr : &result.external, &pool,
+                                                                  &document));
   DeclareExtensions(options.fallback, !progressive.empty(), &document);
   unused_views.insert(pool.released_views().begin(), pool.released_views().end());
   DropUnusedViews(unused_views, &document);
   LACERTA_RETURN_IF_ERROR(MergeBuffers(&document));
+  if (!result.external.empty()) ReferToExternal(result.external, options.external_uri, &document);
   if (plans.empty()) result.report.notes.push_back("the asset holds no mesh");
   result.glb = FormatGlb(document);
   return result;

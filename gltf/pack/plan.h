@@ -7,21 +7,24 @@
 #include <string>
 #include <vector>
 
-#include "document/draco_primitive.h"
+#include "document/draco_encode.h"
 #include "document/gltf_document.h"
 #include "document/place.h"
 #include "document/primitive.h"
 #include "lacerta/gltf.h"
+#include "pack/source.h"
 
 namespace lacerta {
 
-// Primitives that show the same accessors are stored once.
+// Primitives that show the same surface are stored once.
 struct PrimitivePlan {
-  std::vector<Place> places;    // at least one
-  PrimitiveReport report;       // of the first place
-  bool smooth_normals = false;  // NORMAL was dropped, readers derive it
+  std::vector<Place> places;      // at least one
+  std::vector<Place> geometries;  // as in Source
+  PrimitiveReport report;         // of the first place
+  bool smooth_normals = false;    // NORMAL was dropped, readers derive it
   std::optional<EncodedMesh> progressive;
   std::optional<DracoEncoded> draco;
+  std::vector<MorphTarget> targets;  // in the order of the vertices of `draco`
 };
 
 // Reads and encodes all primitives. Fails like PackGltf.

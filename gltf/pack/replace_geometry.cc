@@ -49,22 +49,54 @@ NewGeometry DescribedGeometry(const Primitive& primitive) {
   return geometry;
 }
 
-void ReplaceGeometry(const std::vector<Place>& places, NewGeometry geometry, AccessorPool* pool,
-                     GltfDocument* document) {
+std::vector<std::vector<NamedAccessor>> TargetAccessors(const std::vector<MorphTarget>& targets, const Place& place,
+                                                        GltfDocument* document) {
+  std::vector<std::vector<NamedAccessor>> result;
+  for (size_t t = 0; t < targets.size(); ++t) {
+    std::vector<NamedAccessor> accessors;
+    for (const Attribute& attribute : targets[t]) {
+      const Json* old_target = FindElement(PrimitiveAt(*document, place), "targets", t);
+      const Json* old_index = old_target == nullptr ? nullptr : Find(*old_target, attribute.name.c_str());
+      const Json* old = old_index == nullptr ? nullptr : FindElement(document->json, "accessors", *AsIndex(old_index));
+      const bool sparse = old != nullptr && Find(*old, "sparse") != nullptr && SparseIsSmaller(attribute.data);
+      const bool bounds = attribute.name == "POSITION";
+      Json accessor = sparse ? MakeSparseAccessor(attribute.data, bounds, document)
+                             : MakeAccessor(attribute.data, AccessorUse::kAttribute, bounds, document);
+      accessors.push_back({attribute.name, std::move(accessor)});
+    }
+    result.push_back(std::move(accessors));
+  }
+  return result;
+}
+
+void ReplaceGeometry(const std::vector<Place>& geometries, const std::vector<Place>& places, NewGeometry geometry,
+                     AccessorPool* pool, GltfDocument* document) {
   const Json old = PrimitiveAt(document, places[0]);
-  pool->Release(old, document);
-  const Json* old_attributes = Find(old, "attributes");
-  Json attributes = Json::object();
-  for (NamedAccessor& attribute : geometry.attributes) {
-    const std::optional<uint64_t> preferred =
-        old_attributes == nullptr ? std::nullopt : AsIndex(Find(*old_attributes, attribute.name.c_str()));
-    attributes[attribute.name] = pool->Put(std::move(attribute.json), preferred, document);
+  const bool with_targets = !geometry.targets.empty();
+  for (const Place& place : geometries) {
+    const Json released = PrimitiveAt(document, place);
+    pool->Release(released, with_targets, document);
+  }
+  const auto put_all = [&](std::vector<NamedAccessor>& accessors, const Json* old_references) {
+    Json references = Json::object();
+    for (NamedAccessor& accessor : accessors) {
+      const std::optional<uint64_t> preferred =
+          old_references == nullptr ? std::nullopt : AsIndex(Find(*old_references, accessor.name.c_str()));
+      references[accessor.name] = pool->Put(std::move(accessor.json), preferred, document);
+    }
+    return references;
+  };
+  const Json attributes = put_all(geometry.attributes, Find(old, "attributes"));
+  Json targets = Json::array();
+  for (size_t t = 0; t < geometry.targets.size(); ++t) {
+    targets.push_back(put_all(geometry.targets[t], FindElement(old, "targets", t)));
   }
   const uint64_t indices = pool->Put(std::move(geometry.indices), AsIndex(Find(old, "indices")), document);
   for (const Place& place : places) {
     Json& primitive = PrimitiveAt(document, place);
     primitive["attributes"] = attributes;
     primitive["indices"] = indices;
+    if (with_targets) primitive["targets"] = targets;
     primitive.erase("mode");  // triangles are the default
     if (Json* extensions = Find(primitive, "extensions"); extensions != nullptr && extensions->is_object()) {
       extensions->erase(kDracoName);

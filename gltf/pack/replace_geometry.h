@@ -11,6 +11,7 @@
 #include "document/primitive.h"
 #include "lacerta/mesh.h"
 #include "pack/accessor_pool.h"
+#include "pack/source.h"
 
 namespace lacerta {
 
@@ -24,6 +25,7 @@ struct NewGeometry {
   std::vector<NamedAccessor> attributes;
   Json indices;
   Json extensions = Json::object();  // added to those of the primitive
+  std::vector<std::vector<NamedAccessor>> targets;  // empty: the primitive keeps what it has
 };
 
 // Core accessors with their data.
@@ -34,9 +36,14 @@ NewGeometry PlainGeometry(const Primitive& primitive, GltfDocument* document);
 NewGeometry DescribedGeometry(const TriangleMesh& mesh);
 NewGeometry DescribedGeometry(const Primitive& primitive);
 
-// All `places` show the same geometry so far and get the same new one. What compressed it before goes.
-void ReplaceGeometry(const std::vector<Place>& places, NewGeometry geometry, AccessorPool* pool,
-                     GltfDocument* document);
+// Accessors with the values of morph targets; sparse where those of the primitive at `place` are and that is smaller.
+std::vector<std::vector<NamedAccessor>> TargetAccessors(const std::vector<MorphTarget>& targets, const Place& place,
+                                                        GltfDocument* document);
+
+// All `places` show the same surface so far, by one set of accessors for each of `geometries`, and get the same new one.
+// What compressed it before goes.
+void ReplaceGeometry(const std::vector<Place>& geometries, const std::vector<Place>& places, NewGeometry geometry,
+                     AccessorPool* pool, GltfDocument* document);
 
 // The bufferViews that hold Draco streams.
 std::set<uint64_t> DracoViews(const GltfDocument& document);

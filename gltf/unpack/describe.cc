@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "document/accessor.h"
 #include "document/buffer_edit.h"
 #include "document/gltf_document.h"
 #include "document/place.h"
@@ -35,6 +36,50 @@ StreamInfo StreamOfAsset(const Progressive& progressive, uint64_t index, uint64_
   return info;
 }
 
+// Bytes of an accessor's own data, by its description.
+uint64_t AccessorBytes(const GltfDocument& document, const Json* index) {
+  const Json* accessor =
+      index == nullptr ? nullptr : FindElement(document.json, "accessors", AsIndex(index).value_or(~uint64_t{0}));
+  if (accessor == nullptr || Find(*accessor, "bufferView") == nullptr) return 0;
+  const StatusOr<AccessorData> data = ReadAccessor(document, *AsIndex(index));
+  return data.ok() ? data.value().bytes.size() : 0;
+}
+
+PrimitiveInfo DescribePrimitive(const GltfDocument& document, const Place& place) {
+  const Json& primitive = PrimitiveAt(document, place);
+  PrimitiveInfo info;
+  info.mesh = place.mesh;
+  info.primitive = place.primitive;
+  info.name = AsString(Find(*FindElement(document.json, "meshes", place.mesh), "name"));
+  const auto count_of = [&](const Json* index) {
+    const Json* accessor =
+        index == nullptr ? nullptr : FindElement(document.json, "accessors", AsIndex(index).value_or(~uint64_t{0}));
+    return accessor == nullptr ? 0 : AsIndex(Find(*accessor, "count")).value_or(0);
+  };
+  const Json* attributes = Find(primitive, "attributes");
+  if (attributes != nullptr) info.vertices = count_of(Find(*attributes, "POSITION"));
+  const uint64_t mode = AsIndex(Find(primitive, "mode")).value_or(4);
+  const Json* indices = Find(primitive, "indices");
+  const uint64_t corners = indices != nullptr ? count_of(indices) : info.vertices;
+  if (mode == 4) info.triangles = corners / 3;
+  if (mode > 4 && corners > 2) info.triangles = corners - 2;
+  const Json* draco = PrimitiveExtension(primitive, kDracoName);
+  if (PrimitiveExtension(primitive, kProgressiveName) != nullptr) {
+    info.storage = PrimitiveStorage::kProgressive;
+  } else if (draco != nullptr) {
+    info.storage = PrimitiveStorage::kDraco;
+    const StatusOr<Span<const uint8_t>> bytes =
+        AvailableViewBytes(document, AsIndex(Find(*draco, "bufferView")).value_or(~uint64_t{0}));
+    info.bytes = bytes.ok() ? bytes.value().size() : 0;
+  } else {
+    info.bytes = AccessorBytes(document, indices);
+    if (attributes != nullptr && attributes->is_object()) {
+      for (const Json& index : *attributes) info.bytes += AccessorBytes(document, &index);
+    }
+  }
+  return info;
+}
+
 }  // namespace
 
 StatusOr<AssetInfo> DescribeGltf(Span<const uint8_t> asset, const std::string& folder) {
@@ -42,10 +87,16 @@ StatusOr<AssetInfo> DescribeGltf(Span<const uint8_t> asset, const std::string& f
   const StatusOr<Progressive> progressive = ParseProgressive(document);
   if (!progressive.ok() && progressive.status().code() != StatusCode::kNotFound) return progressive.status();
   AssetInfo info;
+  uint64_t data_size = 0;
+  if (progressive.ok()) {
+    const StatusOr<Bytes> data = TransmittedBytes(document, progressive.value());
+    if (data.ok()) data_size = data.value().size();
+  }
   std::set<uint64_t> described;
   for (const Place& place : AllPlaces(document)) {
     const Json& primitive = PrimitiveAt(document, place);
     ++info.num_primitives;
+    info.primitives.push_back(DescribePrimitive(document, place));
     const Json* extension = PrimitiveExtension(primitive, kProgressiveName);
     if (extension == nullptr) {
       if (PrimitiveExtension(primitive, kDracoName) != nullptr) ++info.num_draco_primitives;
@@ -58,8 +109,7 @@ StatusOr<AssetInfo> DescribeGltf(Span<const uint8_t> asset, const std::string& f
     }
     if (!described.insert(index).second) continue;
     if (info.streams.empty()) info.fallback = FallbackOf(document, primitive);
-    const StatusOr<Span<const uint8_t>> data = AvailableViewBytes(document, progressive.value().data);
-    StreamInfo stream = StreamOfAsset(progressive.value(), index, data.ok() ? data.value().size() : 0);
+    StreamInfo stream = StreamOfAsset(progressive.value(), index, data_size);
     stream.mesh = place.mesh;
     stream.primitive = place.primitive;
     stream.name = AsString(Find(*FindElement(document.json, "meshes", place.mesh), "name"));

@@ -81,7 +81,10 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
   std::vector<Place> geometries;
   for (const std::vector<Place>& places : groups) geometries.push_back(places[0]);
   std::set<uint64_t> unused_views = DracoViews(document);
-  if (progressive.ok()) unused_views.insert(progressive.value().data);
+  if (progressive.ok()) {
+    unused_views.insert(progressive.value().data);
+    if (progressive.value().refinements.has_value()) unused_views.insert(*progressive.value().refinements);
+  }
   AccessorPool pool(document, geometries);
   UnpackResult result;
   for (const std::vector<Place>& places : groups) {
@@ -92,13 +95,14 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
       if (!surface.ok()) return surface.status().WithContext(PlaceName(document, places[0]));
       if (!surface.value().note.empty())
         result.notes.push_back(PlaceName(document, places[0]) + ": " + surface.value().note);
-      ReplaceGeometry(places, PlainGeometry(surface.value().surface, surface.value().smooth_normals, &document), &pool,
+      ReplaceGeometry({places[0]}, places,
+                      PlainGeometry(surface.value().surface, surface.value().smooth_normals, &document), &pool,
                       &document);
     } else if (PrimitiveExtension(primitive, kDracoName) != nullptr) {
       StatusOr<Primitive> decoded = ReadPrimitive(document, primitive, options.limits);
       if (!decoded.ok()) return decoded.status().WithContext(PlaceName(document, places[0]));
       RestoreUnits(&decoded.value());
-      ReplaceGeometry(places, PlainGeometry(decoded.value(), &document), &pool, &document);
+      ReplaceGeometry({places[0]}, places, PlainGeometry(decoded.value(), &document), &pool, &document);
     }
   }
   DropProgressive(&document);

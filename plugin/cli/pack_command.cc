@@ -23,6 +23,7 @@ struct PackArguments {
   double bits_per_vertex = 0.0;
   double psnr = 0.0;
   double error = 0.0;
+  AttributeTargets attributes;
   std::string fallback = "draco";  // one of the names that AddPackCommand lists, like the next four
   std::string form = "draco";
   std::string mode = "default";
@@ -58,13 +59,21 @@ bool MissesTarget(const EncodeTarget& target, const EncodeReport& report) {
 }
 
 bool MissesTarget(const EncodeTarget& target, const PackReport& report) {
+  constexpr double kRounding = 1e-6;
   double bytes = 0.0;
   for (const PrimitiveReport& primitive : report.primitives) {
-    if (primitive.storage != PrimitiveStorage::kProgressive) continue;
-    bytes += static_cast<double>(primitive.bytes_after);
-    if (target.kind != EncodeTarget::Kind::kBytes && MissesTarget(target, primitive.encode)) return true;
+    const bool progressive = primitive.storage == PrimitiveStorage::kProgressive;
+    if (progressive) bytes += static_cast<double>(primitive.bytes_after);
+    if (target.kind == EncodeTarget::Kind::kBytes) continue;  // shared among the meshes
+    if (target.kind == EncodeTarget::Kind::kBitsPerVertex) {
+      if (progressive && MissesTarget(target, primitive.encode)) return true;
+    } else if (primitive.storage != PrimitiveStorage::kUntouched) {
+      const double error =
+          progressive && !primitive.encode.levels.empty() ? primitive.encode.levels.back().error : primitive.error;
+      if (error > primitive.target_error * (1.0 + kRounding)) return true;
+    }
   }
-  return target.kind == EncodeTarget::Kind::kBytes && bytes > target.value;  // shared among the meshes
+  return target.kind == EncodeTarget::Kind::kBytes && bytes > target.value;
 }
 
 std::string Extension(const std::string& path) { return std::filesystem::path(path).extension().string(); }
@@ -77,6 +86,7 @@ void PrintPackReport(const PackArguments& arguments, const PackReport& report, u
                 static_cast<unsigned long long>(primitive.bytes_after), primitive.reason.empty() ? "" : "; ",
                 primitive.reason.c_str());
     if (primitive.storage == PrimitiveStorage::kProgressive) PrintLevels(primitive.encode);
+    if (primitive.storage == PrimitiveStorage::kDraco) PrintPrecision(primitive);
   }
   for (const std::string& note : report.notes) std::printf("note: %s\n", note.c_str());
   std::printf("%s: %llu -> %llu bytes\n", arguments.output.c_str(), static_cast<unsigned long long>(before),
@@ -116,6 +126,7 @@ StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& 
 StatusOr<int> PackAsset(const PackArguments& arguments, const EncodeOptions& encode) {
   PackOptions options;
   options.encode = encode;
+  options.attributes = arguments.attributes;
   if (arguments.fallback == "plain") options.fallback = Fallback::kPlain;
   if (arguments.fallback == "none") options.fallback = Fallback::kNone;
   options.folder = std::filesystem::path(arguments.input).parent_path().string();
@@ -173,6 +184,12 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   target->add_option("--error", arguments->error, "At most this surface error, as a share of the diagonal")
       ->check(CLI::PositiveNumber);
   target->require_option(0, 1);
+  pack->add_option("--uv-error", arguments->attributes.uv_texels,
+                   "At most this RMS error of texture coordinates, in texels of the asset's largest texture (at least 1024; default: 0.5)")
+      ->check(CLI::PositiveNumber);
+  pack->add_option("--normal-error", arguments->attributes.normal_degrees,
+                   "At most this RMS error of normals and tangents, in degrees (default: 2)")
+      ->check(CLI::PositiveNumber);
   pack->add_option("--fallback", arguments->fallback, "What readers without the extension show (.glb; default: draco)")
       ->check(CLI::IsMember({"draco", "plain", "none"}));
   pack->add_option("--form", arguments->form,

@@ -54,6 +54,15 @@ Json ToJson(const PackReport& report) {
                  {"bytesBefore", primitive.bytes_before},
                  {"bytesAfter", primitive.bytes_after}};
     if (primitive.storage == PrimitiveStorage::kProgressive) json["encode"] = ToJson(primitive.encode);
+    if (primitive.storage == PrimitiveStorage::kDraco) {
+      json["error"] = NumberOrNull(primitive.error);
+      json["targetError"] = NumberOrNull(primitive.target_error);
+      json["attributes"] = {{"POSITION", {{"bits", primitive.position_bits}}}};
+      for (const AttributeReport& attribute : primitive.attributes) {
+        json["attributes"][attribute.name] = {
+            {"bits", attribute.bits}, {"error", NumberOrNull(attribute.error)}, {"unit", attribute.unit}};
+      }
+    }
     primitives.push_back(std::move(json));
   }
   return {{"primitives", std::move(primitives)}, {"notes", report.notes}};
@@ -140,6 +149,20 @@ void PrintLevels(const EncodeReport& report) {
                     Short(level.error, 4), Fixed(level.psnr, 2)});
   }
   PrintTable({"level", "triangles", "bytes", "b/iv", "error", "PSNR dB"}, rows);
+}
+
+void PrintPrecision(const PrimitiveReport& report) {
+  std::printf("  POSITION %d bits, error %s of %s", report.position_bits, Short(report.error, 3).c_str(),
+              Short(report.target_error, 3).c_str());
+  for (const AttributeReport& attribute : report.attributes) {
+    if (attribute.bits == 0) {
+      std::printf("; %s exact", attribute.name.c_str());
+    } else {
+      std::printf("; %s %d bits, %s%s%s", attribute.name.c_str(), attribute.bits, Short(attribute.error, 3).c_str(),
+                  attribute.unit.empty() ? "" : " ", attribute.unit.c_str());
+    }
+  }
+  std::printf("\n");
 }
 
 void PrintLevels(const StreamInfo& stream) {

@@ -33,6 +33,7 @@ const char* StorageName(PrimitiveStorage storage);
 const char* FallbackName(Fallback fallback);
 
 void PrintLevels(const EncodeReport& report);
+void PrintPrecision(const PrimitiveReport& report);  // one line: bits and measured error per attribute
 void PrintLevels(const StreamInfo& stream);
 
 }  // namespace lacerta::cli

@@ -23,17 +23,41 @@ enum class Fallback {
   kNone,   // nothing: such a reader refuses the asset
 };
 
+// How far attributes may be off where they are stored with less than their full precision: root mean square over the
+// surface of a primitive.
+struct AttributeTargets {
+  // Texels of the largest texture of the asset, at least 1024. Half a texel is what bilinear filtering blurs over anyway,
+  // and rounding that keeps it moves no point by more than sqrt(3) times as much, less than one texel.
+  double uv_texels = 0.5;
+  // Of normals and tangents. Two degrees are below what a mesh at 70 dB shows of its own shape.
+  double normal_degrees = 2.0;
+  // As 8-bit integers do it, the coarsest that core glTF has: 1 / (255 sqrt(12)).
+  double color = 0.00113;
+  double weight = 0.00113;
+};
+
 struct PackOptions {
   // For every mesh by itself; a target in bytes is shared among the progressive meshes by their vertices.
   EncodeOptions encode;
+  AttributeTargets attributes;
   Fallback fallback = Fallback::kDraco;
   std::string folder;  // where the external buffers of a .gltf are
+  // Not empty: refinements go into a file of their own, which the GLB refers to by this relative URI.
+  std::string external_uri;
 };
 
 enum class PrimitiveStorage {
   kProgressive,  // LACERTA_mesh_progressive
   kDraco,        // KHR_draco_mesh_compression with all attributes
   kUntouched,    // as it was
+};
+
+// An attribute of a primitive that is stored as KHR_draco_mesh_compression.
+struct AttributeReport {
+  std::string name;
+  int bits = 0;        // per component; 0: exact
+  double error = 0.0;  // measured, RMS over the surface
+  std::string unit;    // "texels", "degrees", or empty: that of the values
 };
 
 struct PrimitiveReport {
@@ -45,6 +69,12 @@ struct PrimitiveReport {
   uint64_t bytes_before = 0;  // of its attributes and indices
   uint64_t bytes_after = 0;
   EncodeReport encode;  // of progressive ones
+  // Of those stored as Draco: measured d_S in mesh units (over all primitives that touch it and share its lattice), what
+  // was asked for, and the bits of a position.
+  double error = 0.0;
+  double target_error = 0.0;
+  int position_bits = 0;
+  std::vector<AttributeReport> attributes;  // of those stored as Draco, without positions
 };
 
 struct PackReport {
@@ -54,6 +84,7 @@ struct PackReport {
 
 struct PackResult {
   Bytes glb;
+  Bytes external;  // the bytes of the file named by PackOptions::external_uri; empty where there is nothing to refine
   PackReport report;
 };
 
@@ -103,6 +134,57 @@ struct UnpackResult {
 // ReadProgressive.
 StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions& options);
 
+struct TrimOptions {
+  std::optional<int> level;       // keep no level above it; exactly one of the two has to be set
+  std::optional<uint64_t> bytes;  // of the GLB at most
+  std::string folder;
+};
+
+struct TrimResult {
+  Bytes glb;
+  bool meets_bytes = true;  // false: even the base meshes and all that is not geometry are larger
+};
+
+// A packed asset with fewer refinements, as a legal asset again: the segments that stay are whole, everything else is as
+// it was, and the fallback with it. Refinements in a file of their own come back into the GLB. Fails with
+// kInvalidArgument, kNotFound where the asset is not packed, and like ReadProgressive.
+StatusOr<TrimResult> TrimGltf(Span<const uint8_t> asset, const TrimOptions& options);
+
+struct ValidateOptions {
+  std::string folder;
+  DecodeLimits limits;
+  // The asset before packing, to measure the announced errors against; empty: they are not measured.
+  Span<const uint8_t> original;
+  std::string original_folder;
+};
+
+struct ValidationIssue {
+  bool is_error = true;  // false: legal, but worth to know
+  std::string where;     // "mesh 2 (Helmet), primitive 0", or empty: the asset as a whole
+  std::string message;
+};
+
+// A level of a stream, or a primitive that is no stream, beside the original.
+struct MeasuredError {
+  uint64_t mesh = 0;
+  uint64_t primitive = 0;
+  std::optional<int> level;          // of a stream
+  std::optional<double> announced;   // mesh units
+  double measured = 0.0;             // d_S, mesh units
+  double psnr = 0.0;                 // dB
+};
+
+struct ValidationReport {
+  std::vector<ValidationIssue> issues;
+  std::vector<MeasuredError> measured;
+  bool IsValid() const;  // no issue is an error
+};
+
+// Looks at all that this library can judge: the extension's JSON, every reference and range, that each level of every
+// stream decodes to the counts and bounds that the asset announces, that the fallback is the base, that Draco streams
+// decode; with an original, the errors. What core glTF demands beyond that is the official validator's to say.
+ValidationReport ValidateGltf(Span<const uint8_t> asset, const ValidateOptions& options);
+
 struct FlattenResult {
   TriangleMesh mesh;
   std::vector<std::string> notes;
@@ -128,8 +210,19 @@ struct StreamInfo {
   std::vector<Level> levels;
 };
 
+struct PrimitiveInfo {
+  uint64_t mesh = 0;
+  uint64_t primitive = 0;
+  std::string name;
+  PrimitiveStorage storage = PrimitiveStorage::kUntouched;
+  uint64_t vertices = 0;   // as its accessors say: of the fallback where it is progressive
+  uint64_t triangles = 0;  // 0 for points and lines
+  uint64_t bytes = 0;      // of its own data; 0 where it is progressive, see its stream
+};
+
 struct AssetInfo {
   std::vector<StreamInfo> streams;
+  std::vector<PrimitiveInfo> primitives;
   Fallback fallback = Fallback::kDraco;  // of the first stream; means nothing where there is no stream
   uint64_t num_primitives = 0;
   uint64_t num_draco_primitives = 0;  // with KHR_draco_mesh_compression but not progressive

@@ -1,0 +1,48 @@
+// A whole primitive as a stock Draco mesh stream, with a precision of its own for every attribute. Its twin is
+// draco_primitive.h.
+#ifndef LACERTA_DOCUMENT_DRACO_ENCODE_H_
+#define LACERTA_DOCUMENT_DRACO_ENCODE_H_
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "document/draco_primitive.h"
+#include "document/lattice.h"
+#include "document/primitive.h"
+#include "lacerta/mesh.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+// Where float attributes are rounded to. All primitives that touch take one lattice of positions, so that no crack
+// opens along their common borders.
+struct DracoPrecision {
+  Lattice positions;
+  // Bits of the other float attributes, by name: octahedral for NORMAL (2..30), else of their range
+  // (1..kMostLatticeBits). What is not in here stays exact, as integers do.
+  std::map<std::string, int> bits;
+};
+
+// The lattice over a box with steps of its longest side / (2^bits - 1).
+Lattice PositionLattice(const Vec3f& min, const Vec3f& max, int bits);
+
+// What a decoder makes of the values, in the order of the input.
+Primitive RoundAttributes(const Primitive& primitive, const DracoPrecision& precision);
+
+struct DracoEncoded {
+  Bytes bytes;
+  std::vector<DracoAttributeId> ids;  // in the order of the primitive's attributes
+  Primitive decoded;                  // what a stock decoder makes of `bytes`
+};
+
+// Encodes with the smallest of Draco's ways to code connectivity, all with their most thorough predictions. Vertices
+// that agree in all attributes once these are rounded become one, and triangles without area by that and unused
+// vertices are dropped. Fails with kUnsupported when Draco refuses the primitive or it holds values that are not
+// finite.
+StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const DracoPrecision& precision);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DOCUMENT_DRACO_ENCODE_H_

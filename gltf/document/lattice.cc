@@ -1,0 +1,84 @@
+#include "document/lattice.h"
+
+#include <draco/compression/attributes/normal_compression_utils.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace lacerta {
+namespace {
+
+void Store(float value, uint64_t index, Bytes* bytes) {
+  std::memcpy(bytes->data() + index * sizeof(float), &value, sizeof(float));
+}
+
+}  // namespace
+
+int64_t Lattice::Round(float value, uint32_t component) const {
+  const auto last = static_cast<float>((int64_t{1} << bits) - 1);
+  const float k = std::floor((value - origin[component]) * (last / range) + 0.5f);
+  return static_cast<int64_t>(std::clamp(k, 0.0f, last));
+}
+
+float Lattice::At(int64_t k, uint32_t component) const {
+  const auto last = static_cast<float>((int64_t{1} << bits) - 1);
+  return static_cast<float>(k) * (range / last) + origin[component];
+}
+
+Lattice FitLattice(const AccessorData& data, int bits) {
+  Lattice lattice;
+  lattice.bits = bits;
+  float range = 0.0f;
+  for (uint32_t c = 0; c < data.components && data.count > 0; ++c) {
+    float low = data.Float(0, c);
+    float high = low;
+    for (uint64_t i = 1; i < data.count; ++i) {
+      low = std::min(low, data.Float(i, c));
+      high = std::max(high, data.Float(i, c));
+    }
+    lattice.origin[c] = low;
+    range = std::max(range, high - low);
+  }
+  lattice.range = range > 0.0f ? range : 1.0f;
+  return lattice;
+}
+
+AccessorData RoundToLattice(const AccessorData& data, const Lattice& lattice) {
+  AccessorData rounded = data;
+  for (uint64_t i = 0; i < data.count; ++i) {
+    for (uint32_t c = 0; c < data.components; ++c) {
+      Store(lattice.At(lattice.Round(data.Float(i, c), c), c), i * data.components + c, &rounded.bytes);
+    }
+  }
+  return rounded;
+}
+
+AccessorData RoundOctahedral(const AccessorData& normals, int bits) {
+  draco::OctahedronToolBox box;
+  box.SetQuantizationBits(bits);
+  AccessorData rounded = normals;
+  for (uint64_t i = 0; i < normals.count; ++i) {
+    float vector[3] = {normals.Float(i, 0), normals.Float(i, 1), normals.Float(i, 2)};
+    int32_t s = 0;
+    int32_t t = 0;
+    box.FloatVectorToQuantizedOctahedralCoords(vector, &s, &t);
+    box.QuantizedOctahedralCoordsToUnitVector(s, t, vector);
+    for (uint32_t c = 0; c < 3; ++c) Store(vector[c], 3 * i + c, &rounded.bytes);
+  }
+  return rounded;
+}
+
+AccessorData AsFloat(const AccessorData& data) {
+  if (data.type == ComponentType::kFloat) return data;
+  AccessorData floats;
+  floats.components = data.components;
+  floats.count = data.count;
+  floats.bytes.resize(static_cast<size_t>(data.count) * data.components * sizeof(float));
+  for (uint64_t i = 0; i < data.count; ++i) {
+    for (uint32_t c = 0; c < data.components; ++c) Store(data.Float(i, c), i * data.components + c, &floats.bytes);
+  }
+  return floats;
+}
+
+}  // namespace lacerta

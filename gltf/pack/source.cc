@@ -1,0 +1,150 @@
+#include "pack/source.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "document/buffer_edit.h"
+#include "document/lattice.h"
+#include "extension/progressive.h"
+
+namespace lacerta {
+namespace {
+
+// Why a primitive has to stay as it is whatever it holds; empty when it need not.
+std::string ReasonToKeep(const Json& primitive) {
+  if (AsIndex(Find(primitive, "mode")).value_or(4) < 4) return "holds points or lines";
+  if (const Json* extensions = Find(primitive, "extensions"); extensions != nullptr && extensions->is_object()) {
+    for (const auto& [name, value] : extensions->items()) {
+      if (name != kDracoName && name != "KHR_materials_variants")
+        return "has the extension " + name + ", which may refer to its vertices";
+    }
+  }
+  return "";
+}
+
+uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primitive& primitive) {
+  if (const Json* draco = PrimitiveExtension(json, kDracoName); draco != nullptr) {
+    const StatusOr<Span<const uint8_t>> bytes =
+        BufferViewBytes(document, AsIndex(Find(*draco, "bufferView")).value_or(0));
+    return bytes.ok() ? bytes.value().size() : 0;
+  }
+  uint64_t sum = 0;
+  for (const Attribute& attribute : primitive.attributes) sum += attribute.data.bytes.size();
+  if (const std::optional<uint64_t> index = AsIndex(Find(json, "indices")); index.has_value()) {
+    const StatusOr<AccessorData> indices = ReadAccessor(document, *index);
+    if (indices.ok()) sum += indices.value().bytes.size();
+  }
+  return sum;
+}
+
+StatusOr<std::vector<MorphTarget>> ReadTargets(const GltfDocument& document, const Json& json, uint64_t num_vertices) {
+  std::vector<MorphTarget> targets;
+  for (uint64_t t = 0; t < ArraySize(json, "targets"); ++t) {
+    const Json& attributes = *FindElement(json, "targets", t);
+    const std::string where = "morph target " + std::to_string(t);
+    if (!attributes.is_object()) return InvalidData(where + " is no object");
+    MorphTarget target;
+    for (const auto& [name, index] : attributes.items()) {
+      const std::optional<uint64_t> accessor = AsIndex(&index);
+      if (!accessor.has_value()) return InvalidData(where + ": " + name + " is no accessor index");
+      StatusOr<AccessorData> data = ReadAccessor(document, *accessor);
+      if (!data.ok()) return data.status().WithContext(where + ": " + name);
+      if (data.value().count != num_vertices) {
+        return InvalidData(where + ": " + name + " has " + std::to_string(data.value().count) +
+                           " elements, the primitive has " + std::to_string(num_vertices) + " vertices");
+      }
+      target.push_back({name, std::move(data).value()});
+    }
+    targets.push_back(std::move(target));
+  }
+  return targets;
+}
+
+void RoundAnew(Primitive* primitive) {
+  for (Attribute& attribute : primitive->attributes) {
+    const std::string& name = attribute.name;
+    if (name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name.rfind("TEXCOORD_", 0) == 0) {
+      attribute.data = AsFloat(attribute.data);
+    }
+  }
+}
+
+Status ReadSource(const GltfDocument& document, const Json& json, Source* source) {
+  source->reason = ReasonToKeep(json);
+  if (!source->reason.empty()) return Status();
+  StatusOr<Primitive> primitive = ReadPrimitive(document, json, DecodeLimits{});
+  StatusOr<std::vector<MorphTarget>> targets = std::vector<MorphTarget>();
+  if (primitive.ok()) targets = ReadTargets(document, json, primitive.value().num_vertices);
+  for (const Status& status : {primitive.status(), targets.status()}) {
+    if (status.code() == StatusCode::kUnsupported) source->reason = status.message();
+    if (!status.ok()) return status.code() == StatusCode::kUnsupported ? Status() : status;
+  }
+  source->stored_bytes = StoredBytes(document, json, primitive.value());
+  source->primitive = std::move(primitive).value();
+  source->targets = std::move(targets).value();
+  RoundAnew(&*source->primitive);
+  return Status();
+}
+
+uint64_t Hash(const void* data, size_t size, uint64_t hash) {
+  for (size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<const uint8_t*>(data)[i]) * 0x100000001b3;  // FNV-1a
+  return hash;
+}
+
+uint64_t Hash(const Primitive& primitive) {
+  uint64_t hash = Hash(primitive.triangles.data(), primitive.triangles.size() * sizeof(Triangle), 0xcbf29ce484222325);
+  for (const Attribute& a : primitive.attributes) hash = Hash(a.data.bytes.data(), a.data.bytes.size(), hash);
+  return hash;
+}
+
+bool Same(const Primitive& a, const Primitive& b) {
+  const auto same = [](const Attribute& x, const Attribute& y) {
+    return x.name == y.name && x.data.type == y.data.type && x.data.components == y.data.components &&
+           x.data.normalized == y.data.normalized && x.data.bytes == y.data.bytes;
+  };
+  return a.num_vertices == b.num_vertices && a.triangles == b.triangles &&
+         std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(), b.attributes.end(), same);
+}
+
+// One source for all with the same content. Targets are not compared: morphed surfaces are seldom there twice.
+std::vector<Source> Merge(std::vector<Source> sources) {
+  std::vector<Source> merged;
+  std::multimap<uint64_t, size_t> by_hash;
+  for (Source& source : sources) {
+    size_t same = merged.size();
+    if (source.primitive.has_value() && source.targets.empty()) {
+      const uint64_t hash = Hash(*source.primitive);
+      const auto [begin, end] = by_hash.equal_range(hash);
+      for (auto i = begin; i != end && same == merged.size(); ++i) {
+        if (Same(*merged[i->second].primitive, *source.primitive)) same = i->second;
+      }
+      if (same == merged.size()) by_hash.emplace(hash, same);
+    }
+    if (same == merged.size()) {
+      merged.push_back(std::move(source));
+    } else {
+      Source& known = merged[same];
+      known.places.insert(known.places.end(), source.places.begin(), source.places.end());
+      known.geometries.insert(known.geometries.end(), source.geometries.begin(), source.geometries.end());
+    }
+  }
+  return merged;
+}
+
+}  // namespace
+
+StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document) {
+  std::vector<Source> sources;
+  for (const std::vector<Place>& places : GroupByGeometry(document)) {
+    Source source;
+    source.places = places;
+    source.geometries = {places[0]};
+    const Status status = ReadSource(document, PrimitiveAt(document, places[0]), &source);
+    if (!status.ok()) return status.WithContext(PlaceName(document, places[0]));
+    sources.push_back(std::move(source));
+  }
+  return Merge(std::move(sources));
+}
+
+}  // namespace lacerta

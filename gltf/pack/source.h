@@ -1,0 +1,37 @@
+// The primitives of an asset as they come in, each surface once.
+#ifndef LACERTA_PACK_SOURCE_H_
+#define LACERTA_PACK_SOURCE_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "document/gltf_document.h"
+#include "document/place.h"
+#include "document/primitive.h"
+#include "lacerta/status.h"
+
+namespace lacerta {
+
+// Attributes of a morph target: offsets, in the order of the primitive's vertices.
+using MorphTarget = std::vector<Attribute>;
+
+struct Source {
+  std::vector<Place> places;       // all that show it; at least one
+  std::vector<Place> geometries;   // one place for every set of accessors among them
+  std::optional<Primitive> primitive;  // empty: cannot be compressed, `reason` says why
+  std::vector<MorphTarget> targets;
+  std::string reason;
+  uint64_t stored_bytes = 0;  // of attributes and indices in one set of accessors; 0 where there is no primitive
+};
+
+// Reads all primitives. Those with equal accessors, and those with other accessors of equal content, are one source.
+// Quantized positions, directions and texture coordinates (KHR_mesh_quantization) become floats: they are rounded anew.
+// Fails with kInvalidData on damaged data, naming mesh, primitive, accessor and index; what is legal but cannot be
+// compressed ends as a reason.
+StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_PACK_SOURCE_H_

@@ -1,0 +1,120 @@
+#include "document/meshopt.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#ifdef LACERTA_HAVE_MESHOPTIMIZER
+#include <meshoptimizer.h>
+#endif
+
+#include <cstring>
+
+#include "document/buffer_edit.h"
+#include "gltf/test_assets.h"
+#include "lacerta/gltf.h"
+
+namespace lacerta {
+namespace {
+
+using ::testing::HasSubstr;
+
+#ifdef LACERTA_HAVE_MESHOPTIMIZER
+
+// An asset whose positions and indices are compressed, with the fallback buffer that the extension asks for.
+GltfDocument Compressed(const TriangleMesh& mesh, const char* name) {
+  std::vector<float> positions;
+  for (const Vec3f& p : mesh.positions) positions.insert(positions.end(), {p.x, p.y, p.z});
+  std::vector<uint32_t> indices;
+  for (const Triangle& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
+  Bytes vertices(meshopt_encodeVertexBufferBound(mesh.positions.size(), 12));
+  vertices.resize(
+      meshopt_encodeVertexBuffer(vertices.data(), vertices.size(), positions.data(), mesh.positions.size(), 12));
+  Bytes triangles(meshopt_encodeIndexBufferBound(indices.size(), mesh.positions.size()));
+  triangles.resize(meshopt_encodeIndexBuffer(triangles.data(), triangles.size(), indices.data(), indices.size()));
+  GltfDocument document;
+  const Json fallback = {{"byteLength", 12 * mesh.positions.size() + 4 * indices.size()},
+                         {"extensions", {{name, {{"fallback", true}}}}}};
+  document.json = {
+      {"asset", {{"version", "2.0"}}},
+      {"extensionsUsed", {name}},
+      {"extensionsRequired", {name}},
+      {"buffers", Json::array({{{"byteLength", vertices.size()}}, {{"byteLength", triangles.size()}}, fallback})},
+      {"bufferViews",
+       {{{"buffer", 2},
+         {"byteOffset", 0},
+         {"byteLength", 12 * mesh.positions.size()},
+         {"byteStride", 12},
+         {"extensions",
+          {{name,
+            {{"buffer", 0},
+             {"byteLength", vertices.size()},
+             {"byteStride", 12},
+             {"count", mesh.positions.size()},
+             {"mode", "ATTRIBUTES"}}}}}},
+        {{"buffer", 2},
+         {"byteOffset", 12 * mesh.positions.size()},
+         {"byteLength", 4 * indices.size()},
+         {"extensions",
+          {{name,
+            {{"buffer", 1},
+             {"byteLength", triangles.size()},
+             {"byteStride", 4},
+             {"count", indices.size()},
+             {"mode", "TRIANGLES"}}}}}}}},
+      {"accessors",
+       {{{"bufferView", 0}, {"componentType", 5126}, {"count", mesh.positions.size()}, {"type", "VEC3"}},
+        {{"bufferView", 1}, {"componentType", 5125}, {"count", indices.size()}, {"type", "SCALAR"}}}},
+      {"meshes",
+       Json::array({{{"primitives", Json::array({{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}})}}})}};
+  document.buffers = {vertices, triangles, Bytes()};
+  return document;
+}
+
+TEST(Meshopt, DecodesViewsAndForgetsTheExtension) {
+  const TriangleMesh mesh = testing::WavySphere(8, 12);
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+    GltfDocument document = Compressed(mesh, name);
+    const Status status = DecodeMeshoptViews(&document);
+    ASSERT_TRUE(status.ok()) << status.message();
+    EXPECT_EQ(document.json.dump().find("meshopt"), std::string::npos);
+    EXPECT_FALSE(document.json.contains("extensionsRequired"));
+    const AccessorData positions = ReadAccessor(document, 0).value();
+    EXPECT_EQ(positions.bytes, MakeFloatAccessor(mesh.positions).bytes);
+    EXPECT_EQ(ReadAccessor(document, 1).value().count, 3 * mesh.triangles.size());
+  }
+}
+
+TEST(Meshopt, RefusesWhatItsStreamCannotHold) {
+  const TriangleMesh mesh = testing::WavySphere(8, 12);
+  const auto message = [&](size_t view, const char* key, const Json& value) {
+    GltfDocument document = Compressed(mesh, "EXT_meshopt_compression");
+    document.json["bufferViews"][view]["extensions"]["EXT_meshopt_compression"][key] = value;
+    const Status status = DecodeMeshoptViews(&document);
+    EXPECT_FALSE(status.ok()) << key << value;
+    EXPECT_THAT(status.message(), HasSubstr("bufferView " + std::to_string(view)));
+    return status.message();
+  };
+  EXPECT_THAT(message(0, "count", 4000000000u), HasSubstr("cannot hold"));
+  EXPECT_THAT(message(0, "count", 18446744073709551615u), HasSubstr("cannot hold"));
+  EXPECT_THAT(message(0, "byteStride", 6), HasSubstr("byteStride"));
+  EXPECT_THAT(message(0, "byteStride", 0), HasSubstr("byteStride"));
+  EXPECT_THAT(message(0, "byteLength", 100000000), HasSubstr("truncated"));
+  EXPECT_THAT(message(0, "buffer", 9), HasSubstr("buffer 9"));
+  EXPECT_THAT(message(0, "filter", "OCTAHEDRAL"), HasSubstr("filter"));
+  EXPECT_THAT(message(0, "mode", "POINTS"), HasSubstr("mode"));
+  EXPECT_THAT(message(0, "byteLength", 40), HasSubstr("damaged"));
+  EXPECT_THAT(message(1, "count", 100), HasSubstr("multiple of 3"));
+  EXPECT_THAT(message(1, "byteStride", 12), HasSubstr("byteStride"));
+}
+
+#else
+
+TEST(Meshopt, IsRefusedByName) {
+  GltfDocument document;
+  document.json["bufferViews"] = Json::array({{{"extensions", {{"EXT_meshopt_compression", Json::object()}}}}});
+  EXPECT_THAT(DecodeMeshoptViews(&document).message(), HasSubstr("no meshoptimizer"));
+}
+
+#endif
+
+}  // namespace
+}  // namespace lacerta

@@ -1,0 +1,137 @@
+// Every GLB of the data set, packed and unpacked: nothing is lost that is not geometry, and no crack opens.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "document/accessor.h"
+#include "document/gltf_document.h"
+#include "lacerta/file_io.h"
+#include "lacerta/gltf.h"
+
+namespace lacerta {
+namespace {
+
+constexpr const char* kAssets[] = {
+    "2CylinderEngine", "BoomBox",      "CesiumMan",   "CesiumMilkTruck",       "Corset",          "DamagedHelmet", "FlightHelmet",
+    "Fox",             "GlamVelvetSofa", "GlassVaseFlowers", "MaterialsVariantsShoe", "MorphStressTest", "MosquitoInAmber",
+    "SheenChair",      "SheenCloth",   "ToyCar",      "WaterBottle",           "pizza_uv",        "spot_textured"};
+
+// Edges of one triangle, after vertices at equal positions have become one and triangles with two equal corners are
+// gone.
+uint64_t BorderEdges(const TriangleMesh& mesh) {
+  const auto less = [](const Vec3f& a, const Vec3f& b) {
+    return std::make_tuple(a.x, a.y, a.z) < std::make_tuple(b.x, b.y, b.z);
+  };
+  std::vector<Vec3f> unique = mesh.positions;
+  std::sort(unique.begin(), unique.end(), less);
+  unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
+  const auto welded = [&](uint32_t v) {
+    return std::lower_bound(unique.begin(), unique.end(), mesh.positions[v], less) - unique.begin();
+  };
+  std::map<std::pair<std::ptrdiff_t, std::ptrdiff_t>, int> edges;
+  for (const Triangle& t : mesh.triangles) {
+    const std::ptrdiff_t corners[3] = {welded(t[0]), welded(t[1]), welded(t[2])};
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+    for (int i = 0; i < 3; ++i) ++edges[std::minmax(corners[i], corners[(i + 1) % 3])];
+  }
+  return static_cast<uint64_t>(std::count_if(edges.begin(), edges.end(), [](const auto& e) { return e.second == 1; }));
+}
+
+// The JSON without what says where vertices, indices and bytes are.
+Json Kept(Json json) {
+  for (const char* key : {"accessors", "buffers", "bufferViews"}) json.erase(key);
+  for (Json& image : json.contains("images") ? json["images"] : json["none"]) image.erase("bufferView");
+  json.erase("none");
+  if (json.contains("skins")) {
+    for (Json& skin : json["skins"]) skin.erase("inverseBindMatrices");
+  }
+  for (Json& mesh : json["meshes"]) {
+    for (Json& primitive : mesh["primitives"]) {
+      for (const char* key : {"attributes", "indices", "targets"}) primitive.erase(key);
+      if (primitive.contains("mode") && primitive["mode"] == 4) primitive.erase("mode");  // what its absence says
+    }
+  }
+  if (json.contains("animations")) {
+    for (Json& animation : json["animations"]) {
+      for (Json& sampler : animation["samplers"]) sampler.erase("input"), sampler.erase("output");
+    }
+  }
+  return json;
+}
+
+// The bytes behind what is referred to by index.
+std::vector<Bytes> KeptBytes(const GltfDocument& document) {
+  std::vector<Bytes> all;
+  const auto add_accessor = [&](const Json* index) {
+    if (index == nullptr) return;
+    const StatusOr<AccessorData> data = ReadAccessor(document, index->get<uint64_t>());
+    if (data.ok()) all.push_back(data.value().bytes);
+  };
+  for (uint64_t i = 0; i < ArraySize(document.json, "images"); ++i) {
+    const Json* view = Find(*FindElement(document.json, "images", i), "bufferView");
+    if (view == nullptr) continue;
+    const Span<const uint8_t> bytes = BufferViewBytes(document, view->get<uint64_t>()).value();
+    all.emplace_back(bytes.begin(), bytes.end());
+  }
+  for (uint64_t i = 0; i < ArraySize(document.json, "animations"); ++i) {
+    const Json& animation = *FindElement(document.json, "animations", i);
+    for (uint64_t s = 0; s < ArraySize(animation, "samplers"); ++s) {
+      add_accessor(Find(*FindElement(animation, "samplers", s), "input"));
+      add_accessor(Find(*FindElement(animation, "samplers", s), "output"));
+    }
+  }
+  return all;
+}
+
+class AssetTest : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(AssetTest, KeepsEverythingElseAndOpensNoCrack) {
+  const std::string path = std::string(LACERTA_TEST_DATA_DIR) + "/" + GetParam() + ".glb";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const Bytes asset = ReadFile(path).value();
+  const auto packed = PackGltf(asset, {});
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  const auto unpacked = UnpackGltf(packed.value().glb, {});
+  ASSERT_TRUE(unpacked.ok()) << unpacked.status().message();
+  EXPECT_TRUE(unpacked.value().notes.empty());
+
+  const GltfDocument before = ParseGltf(asset, "").value();
+  const GltfDocument after = ParseGltf(unpacked.value().glb, "").value();
+  EXPECT_EQ(Kept(after.json), Kept(before.json));
+  EXPECT_EQ(KeptBytes(after), KeptBytes(before));
+
+  const TriangleMesh original = FlattenGltf(asset, {}).value().mesh;
+  const TriangleMesh decoded = FlattenGltf(unpacked.value().glb, {}).value().mesh;
+  EXPECT_LE(BorderEdges(decoded), BorderEdges(original));
+  uint64_t bytes_before = 0;
+  uint64_t bytes_after = 0;
+  for (const PrimitiveReport& primitive : packed.value().report.primitives) {
+    bytes_before += primitive.bytes_before;
+    bytes_after += primitive.bytes_after;
+    if (primitive.storage == PrimitiveStorage::kDraco) {
+      EXPECT_LE(primitive.error, primitive.target_error);
+    }
+    for (const AttributeReport& attribute : primitive.attributes) {
+      if (attribute.unit.empty()) continue;
+      const double target =
+          attribute.unit == "texels" ? AttributeTargets().uv_texels : AttributeTargets().normal_degrees;
+      EXPECT_LE(attribute.error, target) << attribute.name;
+    }
+  }
+  EXPECT_LT(bytes_after * 4, bytes_before);
+  EXPECT_LT(packed.value().glb.size(), asset.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(DataSet, AssetTest, ::testing::ValuesIn(kAssets), [](const auto& asset) {
+  std::string name = asset.param;
+  name.erase(std::remove_if(name.begin(), name.end(), [](char c) { return c == '_'; }), name.end());
+  return name;
+});
+
+}  // namespace
+}  // namespace lacerta

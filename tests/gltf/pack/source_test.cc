@@ -1,0 +1,85 @@
+#include "pack/source.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "gltf/test_assets.h"
+
+namespace lacerta {
+namespace {
+
+using testing::AssetBuilder;
+using ::testing::HasSubstr;
+using testing::WavySphere;
+
+TEST(Source, EqualContentIsOneSource) {
+  AssetBuilder builder;
+  builder.AddMesh("a", Json::array({builder.Primitive(WavySphere(6, 8))}));
+  builder.AddMesh("b", Json::array({builder.Primitive(WavySphere(6, 8))}));  // accessors of its own
+  builder.AddMesh("c", Json::array({builder.Primitive(WavySphere(6, 8, {1, 0, 0}))}));
+  const std::vector<Source> sources = ReadSources(builder.document()).value();
+  ASSERT_EQ(sources.size(), 2u);
+  EXPECT_EQ(sources[0].places.size(), 2u);
+  EXPECT_EQ(sources[0].geometries.size(), 2u);
+  EXPECT_EQ(sources[1].places[0].mesh, 2u);
+}
+
+TEST(Source, ReadsSparseAndQuantizedAccessors) {
+  AssetBuilder builder;
+  GltfDocument& document = builder.document();
+  const TriangleMesh ball = WavySphere(6, 8);
+  AccessorData quantized;
+  quantized.type = ComponentType::kInt16;
+  quantized.components = 3;
+  quantized.normalized = true;
+  quantized.count = ball.positions.size();
+  for (const Vec3f& p : ball.positions) {
+    for (const float x : {p.x, p.y, p.z}) {
+      const auto k = static_cast<int16_t>(x / 1.2f * 32767.0f);
+      quantized.bytes.push_back(static_cast<uint8_t>(k & 0xff));
+      quantized.bytes.push_back(static_cast<uint8_t>(k >> 8 & 0xff));
+    }
+  }
+  Json primitive = builder.Primitive(ball);
+  const size_t position = primitive["attributes"]["POSITION"];
+  document.json["accessors"][position] = MakeAccessor(quantized, AccessorUse::kAttribute, true, &document);
+  EXPECT_EQ(document.json["bufferViews"].back()["byteStride"], 8);  // 6 bytes, aligned
+  std::vector<Vec3f> offsets(ball.positions.size());
+  offsets[3] = {0, 0, 1};
+  const uint64_t target = AddAccessor(MakeSparseAccessor(MakeFloatAccessor(offsets), true, &document), &document);
+  primitive["targets"] = Json::array({{{"POSITION", target}}});
+  builder.AddMesh("a", Json::array({primitive}));
+  const std::vector<Source> sources = ReadSources(document).value();
+  ASSERT_TRUE(sources[0].primitive.has_value()) << sources[0].reason;
+  const AccessorData& read = sources[0].primitive->attributes[0].data;
+  EXPECT_EQ(read.type, ComponentType::kFloat);
+  for (uint64_t v = 0; v < read.count; ++v) {
+    EXPECT_NEAR(read.Float(v, 0), ball.positions[v].x / 1.2f, 1e-4) << v;
+  }
+  ASSERT_EQ(sources[0].targets.size(), 1u);
+  EXPECT_EQ(sources[0].targets[0][0].data.bytes, MakeFloatAccessor(offsets).bytes);
+}
+
+TEST(Source, NamesWhatIsWrongWithATarget) {
+  AssetBuilder builder;
+  Json primitive = builder.Primitive(WavySphere(6, 8));
+  primitive["targets"] = Json::array({{{"POSITION", builder.AddFloats({{}, {}}, true)}}});
+  builder.AddMesh("a", Json::array({primitive}));
+  EXPECT_THAT(ReadSources(builder.document()).status().message(),
+              AllOf(HasSubstr("mesh 0 (a), primitive 0"), HasSubstr("morph target 0: POSITION has 2 elements")));
+}
+
+TEST(Source, PointsAndUnknownExtensionsStay) {
+  AssetBuilder builder;
+  Json points = builder.Primitive(WavySphere(6, 8));
+  points["mode"] = 0;
+  Json splats = builder.Primitive(WavySphere(6, 8, {1, 0, 0}));
+  splats["extensions"] = {{"VENDOR_splats", {{"first", 3}}}};
+  builder.AddMesh("a", Json::array({points, splats}));
+  const std::vector<Source> sources = ReadSources(builder.document()).value();
+  EXPECT_THAT(sources[0].reason, HasSubstr("points"));
+  EXPECT_THAT(sources[1].reason, HasSubstr("VENDOR_splats"));
+}
+
+}  // namespace
+}  // namespace lacerta
