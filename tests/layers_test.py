@@ -31,7 +31,7 @@ INSTALLED = {
 # Installed headers that may include a third-party library, and which.
 INSTALLED_LIBRARIES = {"draco.h": {"draco"}, "tinygltf.h": {"tiny_gltf.h"}}
 
-GLTF_FOLDERS = {"document", "extension", "mesh_file", "pack", "unpack"}
+GLTF_FOLDERS = {"document", "extension", "mesh_file", "pack", "trim", "unpack", "validate"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 

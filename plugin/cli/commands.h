@@ -10,6 +10,8 @@ void AddPackCommand(CLI::App* app, int* exit_code);
 void AddUnpackCommand(CLI::App* app, int* exit_code);
 void AddInfoCommand(CLI::App* app, int* exit_code);
 void AddCompareCommand(CLI::App* app, int* exit_code);
+void AddTrimCommand(CLI::App* app, int* exit_code);
+void AddValidateCommand(CLI::App* app, int* exit_code);
 
 }  // namespace lacerta::cli
 

@@ -12,7 +12,8 @@ const char kExitCodeHelp[] =
     "  3  unsupported: a legal file that this version does not handle; nothing was written\n"
     "  4  input/output: a file is missing, or reading or writing failed; nothing was written\n"
     "  5  target missed: the best possible output was written, but it does not meet the target\n"
-    "  6  internal error: please report it\n";
+    "  6  internal error: please report it\n"
+    "  7  several files: some failed, as told for each; the others are done\n";
 
 int Finish(const Status& status) {
   if (status.ok()) return kExitOk;

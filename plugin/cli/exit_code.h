@@ -14,6 +14,7 @@ enum ExitCode {
   kExitIo = 4,            // a file that is missing, or reading or writing failed
   kExitTargetMissed = 5,  // the best possible output was written, but it misses the target
   kExitInternal = 6,      // a bug of ours
+  kExitSomeFailed = 7,    // of several files some failed; the others are done
 };
 
 // The table above as text for --help.

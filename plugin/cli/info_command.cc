@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "batch.h"
 #include "commands.h"
 #include "exit_code.h"
 #include "lacerta/file_io.h"
@@ -29,6 +30,7 @@ Status DescribeAsset(const Bytes& bytes, const InfoArguments& arguments) {
     Json json = {{"bytes", bytes.size()},
                  {"primitives", info.num_primitives},
                  {"dracoPrimitives", info.num_draco_primitives},
+                 {"meshes", ToJson(info.primitives)},
                  {"streams", std::move(streams)}};
     if (!info.streams.empty()) json["fallback"] = FallbackName(info.fallback);
     PrintJson(json);
@@ -43,6 +45,7 @@ Status DescribeAsset(const Bytes& bytes, const InfoArguments& arguments) {
                 FallbackName(info.fallback), Short(stream.diagonal, 6).c_str());
     PrintLevels(stream);
   }
+  PrintPrimitives(info.primitives);
   return Status();
 }
 
@@ -73,7 +76,7 @@ Status DescribeMesh(const Bytes& bytes, MeshFormat format, const InfoArguments& 
 }
 
 Status RunInfo(const InfoArguments& arguments) {
-  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(arguments.input));
+  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadInput(arguments.input));
   const StatusOr<MeshFormat> format = DetectMeshFormat(arguments.input, bytes);
   if (!format.ok()) return format.status().WithContext(arguments.input);
   Status status;

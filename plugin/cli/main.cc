@@ -14,6 +14,8 @@ int main(int argc, char** argv) {
   AddUnpackCommand(&app, &exit_code);
   AddInfoCommand(&app, &exit_code);
   AddCompareCommand(&app, &exit_code);
+  AddTrimCommand(&app, &exit_code);
+  AddValidateCommand(&app, &exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

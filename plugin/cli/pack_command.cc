@@ -1,9 +1,12 @@
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "batch.h"
 #include "commands.h"
 #include "exit_code.h"
 #include "lacerta/codec.h"
@@ -17,7 +20,8 @@ namespace lacerta::cli {
 namespace {
 
 struct PackArguments {
-  std::string input;
+  std::vector<std::string> inputs;  // patterns
+  std::string input;                // the file at hand
   std::string output;
   double bytes = 0.0;
   double bits_per_vertex = 0.0;
@@ -30,7 +34,9 @@ struct PackArguments {
   std::string levels = "any";
   std::string effort = "normal";
   int quality_layers = 1;
-  bool json = false;
+  bool external = false;
+  BatchOptions batch;
+  bool tables = false;  // somebody is looking
 };
 
 EncodeTarget Target(const PackArguments& arguments) {
@@ -93,62 +99,118 @@ void PrintPackReport(const PackArguments& arguments, const PackReport& report, u
               static_cast<unsigned long long>(after));
 }
 
-StatusOr<int> PackStream(const PackArguments& arguments, const EncodeOptions& options) {
-  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ReadMeshFile(arguments.input));
+StatusOr<TriangleMesh> ReadAnyMesh(const std::string& path) {
+  if (path != "-") return ReadMeshFile(path);
+  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadInput(path));
+  LACERTA_ASSIGN_OR_RETURN(const MeshFormat format, DetectMeshFormat(path, bytes));
+  return ParseMesh(bytes, format, "");
+}
+
+StatusOr<FileOutcome> PackStream(const PackArguments& arguments, const EncodeOptions& options) {
+  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ReadAnyMesh(arguments.input));
   const StatusOr<EncodedMesh> encoded = EncodeMesh(mesh, options);
   if (!encoded.ok()) return encoded.status().WithContext(arguments.input);
-  LACERTA_RETURN_IF_ERROR(WriteFileAtomically(arguments.output, encoded.value().stream));
+  LACERTA_RETURN_IF_ERROR(WriteOutput(arguments.output, encoded.value().stream));
   const EncodeReport& report = encoded.value().report;
   const bool missed = MissesTarget(options.target, report);
-  if (arguments.json) {
-    PrintJson({{"output", arguments.output},
-               {"bytes", encoded.value().stream.size()},
-               {"targetMet", !missed},
-               {"encode", ToJson(report)}});
-  } else if (StdoutIsTerminal()) {
+  FileOutcome outcome;
+  outcome.exit_code = missed ? kExitTargetMissed : kExitOk;
+  outcome.bytes_after = encoded.value().stream.size();
+  outcome.json = {{"bytes", outcome.bytes_after}, {"targetMet", !missed}, {"encode", ToJson(report)}};
+  if (arguments.tables) {
     PrintLevels(report);
     if (!report.reason.empty()) std::printf("note: %s\n", report.reason.c_str());
   }
   if (missed)
     std::fprintf(stderr, "lacerta: %s misses the target: %s\n", arguments.output.c_str(), report.reason.c_str());
-  return missed ? kExitTargetMissed : kExitOk;
+  return outcome;
 }
 
 StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& options, uint64_t* input_bytes) {
-  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(arguments.input));
+  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadInput(arguments.input));
   *input_bytes = bytes.size();
-  LACERTA_ASSIGN_OR_RETURN(const MeshFormat format, DetectMeshFormat(arguments.input, bytes));
-  if (format == MeshFormat::kGltf) return PackGltf(bytes, options);
-  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ParseMesh(bytes, format, options.folder));
+  const bool is_json = arguments.input == "-" && !bytes.empty() && bytes[0] == '{';
+  StatusOr<MeshFormat> format = MeshFormat::kGltf;
+  if (!is_json) format = DetectMeshFormat(arguments.input, bytes);
+  if (!format.ok()) return format.status();
+  if (format.value() == MeshFormat::kGltf) return PackGltf(bytes, options);
+  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ParseMesh(bytes, format.value(), options.folder));
   return PackMesh(mesh, std::filesystem::path(arguments.input).stem().string(), options);
 }
 
-StatusOr<int> PackAsset(const PackArguments& arguments, const EncodeOptions& encode) {
+// A relative URI of a file name: what is not safe in one is escaped.
+std::string UriOf(const std::string& name) {
+  std::string uri;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) != 0 || c == '.' || c == '-' || c == '_') {
+      uri += c;
+    } else {
+      char escaped[4];
+      std::snprintf(escaped, sizeof(escaped), "%%%02X", byte);
+      uri += escaped;
+    }
+  }
+  return uri;
+}
+
+StatusOr<FileOutcome> PackAsset(const PackArguments& arguments, const EncodeOptions& encode) {
   PackOptions options;
   options.encode = encode;
   options.attributes = arguments.attributes;
   if (arguments.fallback == "plain") options.fallback = Fallback::kPlain;
   if (arguments.fallback == "none") options.fallback = Fallback::kNone;
   options.folder = std::filesystem::path(arguments.input).parent_path().string();
-  uint64_t input_bytes = 0;
-  const StatusOr<PackResult> packed = PackAny(arguments, options, &input_bytes);
+  const std::filesystem::path external = std::filesystem::path(arguments.output).replace_extension(".refinements.bin");
+  if (arguments.external) options.external_uri = UriOf(external.filename().string());
+  FileOutcome outcome;
+  const StatusOr<PackResult> packed = PackAny(arguments, options, &outcome.bytes_before);
   if (!packed.ok()) return packed.status().WithContext(arguments.input);
-  LACERTA_RETURN_IF_ERROR(WriteFileAtomically(arguments.output, packed.value().glb));
+  // The GLB last: where it is, all that it refers to is.
+  if (!packed.value().external.empty()) {
+    LACERTA_RETURN_IF_ERROR(WriteOutput(external.string(), packed.value().external));
+  }
+  LACERTA_RETURN_IF_ERROR(WriteOutput(arguments.output, packed.value().glb));
   const PackReport& report = packed.value().report;
   const bool missed = MissesTarget(encode.target, report);
-  if (arguments.json) {
-    Json json = {{"output", arguments.output}, {"bytes", packed.value().glb.size()}, {"targetMet", !missed}};
-    json.update(ToJson(report));
-    PrintJson(json);
-  } else if (StdoutIsTerminal()) {
-    PrintPackReport(arguments, report, input_bytes, packed.value().glb.size());
-  }
+  outcome.exit_code = missed ? kExitTargetMissed : kExitOk;
+  outcome.bytes_after = packed.value().glb.size() + packed.value().external.size();
+  outcome.json = {{"bytes", packed.value().glb.size()}, {"targetMet", !missed}};
+  if (arguments.external) outcome.json["externalBytes"] = packed.value().external.size();
+  outcome.json.update(ToJson(report));
+  if (arguments.tables) PrintPackReport(arguments, report, outcome.bytes_before, outcome.bytes_after);
   if (missed)
     std::fprintf(stderr, "lacerta: %s misses the target; see the report for the reason\n", arguments.output.c_str());
-  return missed ? kExitTargetMissed : kExitOk;
+  return outcome;
 }
 
-int RunPack(const PackArguments& arguments) {
+FileOutcome PackFile(PackArguments arguments, const EncodeOptions& options, const BatchItem& item) {
+  arguments.input = item.input;
+  arguments.output = item.output;
+  const std::string extension = Extension(arguments.output);
+  StatusOr<FileOutcome> result = InvalidArgument(arguments.output + ": the output has to be a .glb or .drc file");
+  if (extension == ".glb" || arguments.output == "-") result = PackAsset(arguments, options);
+  if (extension == ".drc") result = PackStream(arguments, options);
+  if (result.ok()) return std::move(result).value();
+  FileOutcome outcome;
+  outcome.status = result.status();
+  return outcome;
+}
+
+StatusOr<std::vector<BatchItem>> Items(const PackArguments& arguments) {
+  if (arguments.external && arguments.output == "-") {
+    return InvalidArgument("--external needs a file to write to: standard output is one");
+  }
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<std::string> inputs,
+                           ExpandInputs(arguments.inputs, {".glb", ".gltf", ".obj", ".ply", ".off", ".stl", ".drc"}));
+  return PairOutputs(arguments.inputs, inputs, arguments.output, ".glb");
+}
+
+int RunPack(PackArguments arguments) {
+  const StatusOr<std::vector<BatchItem>> items = Items(arguments);
+  if (!items.ok()) return Finish(items.status());
+  const bool single = items.value().size() == 1;
+  arguments.tables = single && !arguments.batch.json && items.value()[0].output != "-" && StdoutIsTerminal();
   ProgressLine progress;
   EncodeOptions options;
   options.target = Target(arguments);
@@ -159,12 +221,9 @@ int RunPack(const PackArguments& arguments) {
                                                   : LevelChoice::kWhereTheyPay;
   options.mode = arguments.mode == "paper" ? EncodeMode::kPaper : EncodeMode::kDefault;
   options.effort = arguments.effort == "fast" ? Effort::kFast : arguments.effort == "best" ? Effort::kBest : Effort::kNormal;
-  options.progress = progress.Callback();
-  const std::string extension = Extension(arguments.output);
-  StatusOr<int> result = InvalidArgument(arguments.output + ": the output has to be a .glb or .drc file");
-  if (extension == ".glb") result = PackAsset(arguments, options);
-  if (extension == ".drc") result = PackStream(arguments, options);
-  return result.ok() ? result.value() : Finish(result.status());
+  if (single) options.progress = progress.Callback();
+  return RunBatch(items.value(), arguments.batch,
+                  [&](const BatchItem& item) { return PackFile(arguments, options, item); });
 }
 
 }  // namespace
@@ -172,8 +231,12 @@ int RunPack(const PackArguments& arguments) {
 void AddPackCommand(CLI::App* app, int* exit_code) {
   const auto arguments = std::make_shared<PackArguments>();
   CLI::App* pack = app->add_subcommand("pack", "Compress a mesh or an asset");
-  pack->add_option("IN", arguments->input, "A .glb, .gltf, .obj, .ply, .off, .stl or .drc file")->required();
-  pack->add_option("-o,--output", arguments->output, "A .glb asset or a bare .drc stream")->required();
+  pack->add_option("IN", arguments->inputs,
+                   "Files (.glb, .gltf, .obj, .ply, .off, .stl, .drc), patterns with *, ? and **, folders; - for standard input")
+      ->required();
+  pack->add_option("-o,--output", arguments->output,
+                   "A .glb asset or a bare .drc stream; a folder for several inputs; - for standard output")
+      ->required();
   CLI::Option_group* target = pack->add_option_group("target", "What to aim at (default: --psnr 70)");
   target->add_option("--bytes", arguments->bytes, "At most this many bytes of geometry, within 2 %")
       ->check(CLI::PositiveNumber);
@@ -205,7 +268,10 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
       ->check(CLI::IsMember({"any", "always", "0"}));
   pack->add_option("--effort", arguments->effort, "fast: 30 % less time, 2 % more bytes; normal (default); best: 80 % more time, 2 % fewer bytes")
       ->check(CLI::IsMember({"fast", "normal", "best"}));
-  pack->add_flag("--json", arguments->json, "Print a report as JSON");
+  pack->add_flag("--external", arguments->external,
+                 "Put refinements into a second file, OUT.refinements.bin, which readers fetch when they want it");
+  AddBatchOptions(pack, &arguments->batch);
+  pack->add_flag("--json", arguments->batch.json, "Print a report as JSON");
   pack->footer(kExitCodeHelp);
   pack->callback([arguments, exit_code] { *exit_code = RunPack(*arguments); });
 }

@@ -84,6 +84,20 @@ Json ToJson(const StreamInfo& stream) {
           {"levels", std::move(levels)}};
 }
 
+Json ToJson(const std::vector<PrimitiveInfo>& primitives) {
+  Json json = Json::array();
+  for (const PrimitiveInfo& primitive : primitives) {
+    json.push_back({{"mesh", primitive.mesh},
+                    {"primitive", primitive.primitive},
+                    {"name", primitive.name},
+                    {"storage", StorageName(primitive.storage)},
+                    {"vertices", primitive.vertices},
+                    {"triangles", primitive.triangles},
+                    {"bytes", primitive.bytes}});
+  }
+  return json;
+}
+
 void PrintJson(const Json& json) {
   std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
 }
@@ -163,6 +177,17 @@ void PrintPrecision(const PrimitiveReport& report) {
     }
   }
   std::printf("\n");
+}
+
+void PrintPrimitives(const std::vector<PrimitiveInfo>& primitives) {
+  std::vector<std::vector<std::string>> rows;
+  for (const PrimitiveInfo& primitive : primitives) {
+    if (primitive.storage == PrimitiveStorage::kProgressive) continue;
+    rows.push_back({std::to_string(primitive.mesh), std::to_string(primitive.primitive), StorageName(primitive.storage),
+                    std::to_string(primitive.vertices), std::to_string(primitive.triangles),
+                    std::to_string(primitive.bytes), primitive.name});
+  }
+  if (!rows.empty()) PrintTable({"mesh", "primitive", "storage", "vertices", "triangles", "bytes", "name"}, rows);
 }
 
 void PrintLevels(const StreamInfo& stream) {

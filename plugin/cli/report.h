@@ -19,6 +19,7 @@ Json NumberOrNull(double value);
 Json ToJson(const EncodeReport& report);
 Json ToJson(const PackReport& report);
 Json ToJson(const StreamInfo& stream);
+Json ToJson(const std::vector<PrimitiveInfo>& primitives);
 
 void PrintJson(const Json& json);
 
@@ -35,6 +36,7 @@ const char* FallbackName(Fallback fallback);
 void PrintLevels(const EncodeReport& report);
 void PrintPrecision(const PrimitiveReport& report);  // one line: bits and measured error per attribute
 void PrintLevels(const StreamInfo& stream);
+void PrintPrimitives(const std::vector<PrimitiveInfo>& primitives);  // those that are no stream
 
 }  // namespace lacerta::cli
 

@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "extension/progressive.h"
+#include "gltf/two_streams.h"
+#include "lacerta/file_io.h"
+#include "lacerta/gltf.h"
+
+namespace lacerta {
+namespace {
+
+using testing::TwoStreams;
+
+TrimResult Trim(std::optional<int> level, std::optional<uint64_t> bytes) {
+  TrimOptions options;
+  options.level = level;
+  options.bytes = bytes;
+  return TrimGltf(TwoStreams().glb, options).value();
+}
+
+TEST(Trim, ToALevelGivesThatLevelOfEveryStream) {
+  const auto whole = ReadProgressive(TwoStreams().glb, {}).value();
+  ASSERT_EQ(whole.size(), 2u);
+  ASSERT_GE(whole[0].num_levels, 2);
+  size_t last = 0;
+  for (int level = 0; level <= whole[0].num_levels; ++level) {
+    const Bytes glb = Trim(level, std::nullopt).glb;
+    EXPECT_GT(glb.size(), last);
+    last = glb.size();
+    UnpackOptions at_level;
+    at_level.level = level;
+    const auto wanted = ReadProgressive(TwoStreams().glb, at_level).value();
+    const auto trimmed = ReadProgressive(glb, {}).value();
+    for (size_t s = 0; s < wanted.size(); ++s) {
+      EXPECT_FALSE(trimmed[s].from_fallback) << trimmed[s].note;
+      EXPECT_EQ(trimmed[s].level, std::min(level, whole[s].num_levels));
+      EXPECT_EQ(trimmed[s].surface.positions, wanted[s].surface.positions);
+    }
+    EXPECT_TRUE(ValidateGltf(glb, {}).IsValid());
+  }
+  EXPECT_EQ(last, TwoStreams().glb.size());
+}
+
+TEST(Trim, ToBytesKeepsAsMuchAsFits) {
+  const size_t least = Trim(0, std::nullopt).glb.size();
+  const size_t most = TwoStreams().glb.size();
+  size_t last = 0;
+  for (int i = 0; i <= 8; ++i) {
+    const uint64_t budget = least + (most - least) * static_cast<size_t>(i) / 8;
+    const TrimResult result = Trim(std::nullopt, budget);
+    EXPECT_TRUE(result.meets_bytes);
+    EXPECT_LE(result.glb.size(), budget);
+    EXPECT_GE(result.glb.size(), last);
+    last = result.glb.size();
+    EXPECT_TRUE(ValidateGltf(result.glb, {}).IsValid());
+  }
+  EXPECT_EQ(last, most);
+  const TrimResult too_small = Trim(std::nullopt, 100);
+  EXPECT_FALSE(too_small.meets_bytes);
+  EXPECT_LE(too_small.glb.size(), least);
+}
+
+TEST(Trim, OfATrimmedAssetIsTheSame) {
+  TrimOptions options;
+  options.level = 1;
+  const Bytes once = TrimGltf(TwoStreams().glb, options).value().glb;
+  EXPECT_EQ(TrimGltf(once, options).value().glb, once);
+  options.level = 0;
+  EXPECT_EQ(TrimGltf(once, options).value().glb, TrimGltf(TwoStreams().glb, options).value().glb);
+}
+
+TEST(Trim, RefusesWhatMakesNoSense) {
+  EXPECT_EQ(TrimGltf(TwoStreams().glb, {}).status().code(), StatusCode::kInvalidArgument);
+  TrimOptions options;
+  options.level = 0;
+  EXPECT_EQ(TrimGltf(testing::TwoBalls(), options).status().code(), StatusCode::kNotFound);
+}
+
+TEST(External, RefinementsAreInAFileOfTheirOwn) {
+  const PackResult split = testing::PackTwoStreams("rest.bin");
+  ASSERT_FALSE(split.external.empty());
+  EXPECT_LT(split.glb.size(), TwoStreams().glb.size());
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "lacerta_external";
+  std::filesystem::create_directories(folder);
+  UnpackOptions options;
+  options.folder = folder.string();
+  const auto levels = [&] {
+    const auto surfaces = ReadProgressive(split.glb, options).value();
+    EXPECT_FALSE(surfaces[0].from_fallback) << surfaces[0].note;
+    return surfaces[0].level;
+  };
+  const int finest = ReadProgressive(TwoStreams().glb, {}).value()[0].level;
+  EXPECT_EQ(levels(), 0);  // not fetched yet
+  ASSERT_TRUE(WriteFileAtomically((folder / "rest.bin").string(), split.external).ok());
+  EXPECT_EQ(levels(), finest);
+  const Span<const uint8_t> half = Span<const uint8_t>(split.external).First(split.external.size() / 2);
+  ASSERT_TRUE(WriteFileAtomically((folder / "rest.bin").string(), half).ok());
+  EXPECT_LT(levels(), finest);
+  ASSERT_TRUE(WriteFileAtomically((folder / "rest.bin").string(), split.external).ok());
+  TrimOptions trim;
+  trim.level = finest;
+  trim.folder = options.folder;
+  EXPECT_EQ(ReadProgressive(TrimGltf(split.glb, trim).value().glb, {}).value()[0].level, finest);
+  EXPECT_EQ(UnpackGltf(split.glb, options).value().glb, UnpackGltf(TwoStreams().glb, {}).value().glb);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace lacerta
