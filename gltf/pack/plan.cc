@@ -8,6 +8,7 @@
 #include "lacerta/surface_distance.h"
 #include "pack/family.h"
 #include "pack/precision.h"
+#include "pack/simplified.h"
 #include "pack/texel_scale.h"
 #include "pack/vertex_match.h"
 
@@ -136,47 +137,131 @@ bool ReorderTargets(const Source& source, const DracoPrecision& precision, const
   return true;
 }
 
-// Draco with all vertices, where that is smaller than what there is: the primitive as it came, or a stream.
-void PlanDraco(size_t index, Context* context, PrimitivePlan* plan) {
+// A primitive in Draco form, and what its report is to say then.
+struct DracoCandidate {
+  DracoEncoded encoded;
+  PrimitiveReport report;
+  std::vector<MorphTarget> targets;
+};
+
+// All members of a family in Draco form: parallel to Family::members.
+struct FamilyCandidate {
+  std::vector<DracoCandidate> members;
+  uint64_t bytes = 0;  // with their JSON
+};
+
+uint64_t StoredBytes(const FamilyCandidate& candidate) {
+  uint64_t sum = 0;
+  for (const DracoCandidate& member : candidate.members) sum += member.encoded.bytes.size() + kDracoJsonBytes;
+  return sum;
+}
+
+double TexelsOf(const Context& context, size_t index, uint64_t set) {
+  return TexelsPerUnit(*context.document, context.sources[index].places, set, context.texel_side);
+}
+
+// With all vertices.
+StatusOr<DracoCandidate> EncodeSource(size_t index, Context* context) {
   const Source& source = context->sources[index];
-  PrimitiveReport& report = plan->report;
   const size_t family = context->family_of[index];
   const SharedLattice& lattice = LatticeOf(family, context);
   AttributePrecision attributes =
-      FindAttributeBits(*source.primitive, context->options->attributes, [&](uint64_t set) {
-        return TexelsPerUnit(*context->document, source.places, set, context->texel_side);
-      });
+      FindAttributeBits(*source.primitive, context->options->attributes,
+                        [&](uint64_t set) { return TexelsOf(*context, index, set); });
   const DracoPrecision precision = {lattice.lattice, std::move(attributes.bits)};
-  StatusOr<DracoEncoded> encoded = EncodeDracoPrimitive(*source.primitive, precision);
-  const bool is_progressive = plan->progressive.has_value();
-  if (!encoded.ok()) return is_progressive ? void() : AddReason(encoded.status().message(), &report);
-  const uint64_t bytes = encoded.value().bytes.size();
-  if (bytes + kDracoJsonBytes >= report.bytes_before) {
-    return is_progressive ? void()
-                          : AddReason("compressed it would be larger (" + std::to_string(bytes) +
-                                          " bytes and their description)",
-                                      &report);
+  DracoCandidate candidate;
+  LACERTA_ASSIGN_OR_RETURN(candidate.encoded, EncodeDracoPrimitive(*source.primitive, precision));
+  if (!source.targets.empty() && !ReorderTargets(source, precision, candidate.encoded.decoded, &candidate.targets)) {
+    return Unsupported("has morph targets that tell apart what its other attributes do not");
   }
-  if (is_progressive) {
-    const uint64_t progressive = plan->progressive->stream.size();
-    if (bytes >= progressive + kProgressiveJsonBytes) return;
-    report.reason.clear();
-    AddReason("all its vertices in Draco are smaller than a stream (" + std::to_string(progressive) + " bytes)",
-              &report);
-    plan->progressive.reset();
-    plan->smooth_normals = false;
-    report.encode = {};
+  candidate.report.error = lattice.error;
+  candidate.report.position_bits = lattice.lattice.bits;
+  candidate.report.attributes = std::move(attributes.reports);
+  return candidate;
+}
+
+StatusOr<FamilyCandidate> WithAllVertices(size_t family, Context* context) {
+  FamilyCandidate candidate;
+  for (const size_t member : context->families.families[family].members) {
+    StatusOr<DracoCandidate> encoded = EncodeSource(member, context);
+    if (!encoded.ok()) return encoded.status();
+    candidate.members.push_back(std::move(encoded).value());
   }
-  if (!source.targets.empty() && !ReorderTargets(source, precision, encoded.value().decoded, &plan->targets)) {
-    return AddReason("has morph targets that tell apart what its other attributes do not", &report);
+  candidate.bytes = StoredBytes(candidate);
+  return candidate;
+}
+
+StatusOr<FamilyCandidate> Simplified(size_t family, Context* context) {
+  const std::vector<size_t>& members = context->families.families[family].members;
+  std::vector<const Primitive*> primitives;
+  for (const size_t member : members) {
+    if (!context->sources[member].targets.empty()) return Unsupported("has morph targets");
+    primitives.push_back(&*context->sources[member].primitive);
   }
-  report.storage = PrimitiveStorage::kDraco;
-  report.bytes_after = bytes;
-  report.error = lattice.error;
-  report.target_error = ErrorOf(*context, family);
-  report.position_bits = lattice.lattice.bits;
-  report.attributes = std::move(attributes.reports);
-  plan->draco = std::move(encoded).value();
+  LACERTA_ASSIGN_OR_RETURN(SimplifiedFamily simplified,
+                           SimplifyFamily(primitives, ErrorOf(*context, family), context->options->attributes,
+                                          context->texel_side, [&](size_t member, uint64_t set) {
+                                            return TexelsOf(*context, members[member], set);
+                                          }));
+  FamilyCandidate candidate;
+  for (size_t m = 0; m < members.size(); ++m) {
+    DracoCandidate member;
+    member.encoded = std::move(simplified.members[m]);
+    member.report.error = simplified.error;
+    member.report.position_bits = simplified.position_bits;
+    member.report.attributes = std::move(simplified.reports[m]);
+    member.report.reason = "simplified from " + std::to_string(primitives[m]->triangles.size()) + " to " +
+                           std::to_string(member.encoded.decoded.triangles.size()) + " triangles";
+    candidate.members.push_back(std::move(member));
+  }
+  candidate.bytes = StoredBytes(candidate);
+  return candidate;
+}
+
+// The smallest of what there is, Draco with all vertices and Draco of a simplified surface, for a whole family: one that
+// stayed as it is would come apart from neighbors that are rounded.
+void PlanFamily(size_t family, Context* context, std::vector<PrimitivePlan>* plans) {
+  const std::vector<size_t>& members = context->families.families[family].members;
+  const bool is_stream = (*plans)[members[0]].progressive.has_value();
+  uint64_t least = 0;
+  for (const size_t member : members) least += (*plans)[member].report.bytes_before;
+  if (is_stream) least = std::min(least, (*plans)[members[0]].progressive->stream.size() + kDracoJsonBytes + kProgressiveJsonBytes);
+  StatusOr<FamilyCandidate> chosen = WithAllVertices(family, context);
+  std::string against = chosen.ok() ? "" : chosen.status().message();
+  if (chosen.ok() && chosen.value().bytes >= least) {
+    against = "compressed it would be larger (" + std::to_string(chosen.value().bytes) + " bytes with their description)";
+    chosen = Unsupported(against);
+  }
+  if (chosen.ok()) least = chosen.value().bytes;
+  if (context->options->simplify && !is_stream) {  // streams have tried a simplified surface themselves
+    StatusOr<FamilyCandidate> simplified = Simplified(family, context);
+    if (simplified.ok() && simplified.value().bytes < least) chosen = std::move(simplified);
+  }
+  for (size_t m = 0; m < members.size(); ++m) {
+    PrimitivePlan& plan = (*plans)[members[m]];
+    if (!chosen.ok()) {
+      if (!is_stream) AddReason(against, &plan.report);
+      continue;
+    }
+    DracoCandidate& candidate = chosen.value().members[m];
+    PrimitiveReport& report = plan.report;
+    if (is_stream) {
+      report.reason = "all its vertices in Draco are smaller than a stream (" +
+                      std::to_string(plan.progressive->stream.size()) + " bytes)";
+      report.encode = {};
+      plan.progressive.reset();
+      plan.smooth_normals = false;
+    }
+    if (!candidate.report.reason.empty()) AddReason(candidate.report.reason, &report);
+    report.storage = PrimitiveStorage::kDraco;
+    report.bytes_after = candidate.encoded.bytes.size();
+    report.error = candidate.report.error;
+    report.target_error = ErrorOf(*context, family);
+    report.position_bits = candidate.report.position_bits;
+    report.attributes = std::move(candidate.report.attributes);
+    plan.targets = std::move(candidate.targets);
+    plan.draco = std::move(candidate.encoded);
+  }
 }
 
 // A byte budget for the asset is shared by the number of vertices; an error is the scene's.
@@ -256,16 +341,21 @@ StatusOr<std::vector<PrimitivePlan>> PlanPrimitives(const GltfDocument& document
       const Status status = PlanProgressive(source, OptionsOf(context, i, all_vertices), &plan);
       if (!status.ok()) return status.WithContext(PlaceName(document, plan.places[0]));
     }
-    const bool settled =
-        plan.progressive.has_value() &&
-        (refine_always || IsRate(options.encode.target) || options.fallback == Fallback::kPlain);
-    if (source.primitive.has_value() && !settled) {
-      if (options.fallback == Fallback::kPlain) {
-        AddReason("left as it is so that every reader opens the asset", &plan.report);
-      } else {
-        PlanDraco(i, &context, &plan);
-      }
+  }
+  for (size_t f = 0; f < context.families.families.size(); ++f) {
+    const std::vector<size_t>& members = context.families.families[f].members;
+    const bool is_stream = plans[members[0]].progressive.has_value();
+    const bool plain = options.fallback == Fallback::kPlain;
+    if (is_stream && (refine_always || IsRate(options.encode.target) || plain)) continue;
+    if (!plain) {
+      PlanFamily(f, &context, &plans);
+      continue;
     }
+    for (const size_t member : members) {
+      AddReason("left as it is so that every reader opens the asset", &plans[member].report);
+    }
+  }
+  for (PrimitivePlan& plan : plans) {
     if (plan.report.storage == PrimitiveStorage::kUntouched) plan.report.bytes_after = plan.report.bytes_before;
   }
   return plans;

@@ -35,6 +35,7 @@ struct PackArguments {
   std::string effort = "normal";
   int quality_layers = 1;
   bool external = false;
+  bool keep_vertices = false;
   BatchOptions batch;
   bool tables = false;  // somebody is looking
 };
@@ -158,6 +159,7 @@ StatusOr<FileOutcome> PackAsset(const PackArguments& arguments, const EncodeOpti
   PackOptions options;
   options.encode = encode;
   options.attributes = arguments.attributes;
+  options.simplify = !arguments.keep_vertices;
   if (arguments.fallback == "plain") options.fallback = Fallback::kPlain;
   if (arguments.fallback == "none") options.fallback = Fallback::kNone;
   options.folder = std::filesystem::path(arguments.input).parent_path().string();
@@ -248,7 +250,7 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
       ->check(CLI::PositiveNumber);
   target->require_option(0, 1);
   pack->add_option("--uv-error", arguments->attributes.uv_texels,
-                   "At most this RMS error of texture coordinates, in texels of the asset's largest texture (at least 1024; default: 0.5)")
+                   "At most this RMS error of texture coordinates, in texels of the asset's largest texture (at least 1024; default: 1)")
       ->check(CLI::PositiveNumber);
   pack->add_option("--normal-error", arguments->attributes.normal_degrees,
                    "At most this RMS error of normals and tangents, in degrees (default: 2)")
@@ -270,6 +272,7 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
       ->check(CLI::IsMember({"fast", "normal", "best"}));
   pack->add_flag("--external", arguments->external,
                  "Put refinements into a second file, OUT.refinements.bin, which readers fetch when they want it");
+  pack->add_flag("--keep-vertices", arguments->keep_vertices, "Do not simplify surfaces with attributes, only round them");
   AddBatchOptions(pack, &arguments->batch);
   pack->add_flag("--json", arguments->batch.json, "Print a report as JSON");
   pack->footer(kExitCodeHelp);

@@ -24,11 +24,11 @@ enum class Fallback {
 };
 
 // How far attributes may be off where they are stored with less than their full precision: root mean square over the
-// surface of a primitive.
+// surface; of simplified surfaces over the 99 % of it where the error is least.
 struct AttributeTargets {
-  // Texels of the largest texture of the asset, at least 1024. Half a texel is what bilinear filtering blurs over anyway,
-  // and rounding that keeps it moves no point by more than sqrt(3) times as much, less than one texel.
-  double uv_texels = 0.5;
+  // Texels of the largest texture of the asset, at least 1024. One texel is the distance over which bilinear filtering
+  // blurs anyway.
+  double uv_texels = 1.0;
   // Of normals and tangents. Two degrees are below what a mesh at 70 dB shows of its own shape.
   double normal_degrees = 2.0;
   // As 8-bit integers do it, the coarsest that core glTF has: 1 / (255 sqrt(12)).
@@ -40,6 +40,8 @@ struct PackOptions {
   // For every mesh by itself; a target in bytes is shared among the progressive meshes by their vertices.
   EncodeOptions encode;
   AttributeTargets attributes;
+  // Whether surfaces with attributes may be simplified where that is smaller and the errors are met.
+  bool simplify = true;
   Fallback fallback = Fallback::kDraco;
   std::string folder;  // where the external buffers of a .gltf are
   // Not empty: refinements go into a file of their own, which the GLB refers to by this relative URI.

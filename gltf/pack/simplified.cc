@@ -1,0 +1,275 @@
+#include "pack/simplified.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "document/lattice.h"
+#include "pack/precision.h"
+#include "remesh/simplify_to_errors.h"
+
+namespace lacerta {
+namespace {
+
+bool BeginsWith(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
+
+std::optional<AttributeKind> KindOf(const Attribute& attribute) {
+  const std::string& name = attribute.name;
+  if (BeginsWith(name, "TEXCOORD_") && attribute.data.components == 2) return AttributeKind::kTextureCoordinates;
+  if (BeginsWith(name, "COLOR_")) return AttributeKind::kColor;
+  if (name == "NORMAL" && attribute.data.components == 3) return AttributeKind::kNormal;
+  if (name == "TANGENT" && attribute.data.components == 4) return AttributeKind::kTangent;
+  return std::nullopt;
+}
+
+StatusOr<VertexSoup> ToSoup(const Primitive& primitive) {
+  VertexSoup soup;
+  TriangleMesh surface = Surface(primitive);
+  soup.positions = std::move(surface.positions);
+  soup.triangles = std::move(surface.triangles);
+  for (const Attribute& attribute : primitive.attributes) {
+    if (attribute.name == "POSITION") continue;
+    const std::optional<AttributeKind> kind = KindOf(attribute);
+    if (!kind.has_value()) return Unsupported("has the attribute " + attribute.name + ", which is not simplified");
+    VertexSoup::Attribute values{attribute.name, *kind, attribute.data.components, {}};
+    values.values.reserve(static_cast<size_t>(primitive.num_vertices) * values.components);
+    for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
+      for (uint32_t c = 0; c < values.components; ++c) values.values.push_back(attribute.data.Float(v, c));
+    }
+    soup.attributes.push_back(std::move(values));
+  }
+  return soup;
+}
+
+StatusOr<AttributedMesh> ToMesh(const std::vector<const Primitive*>& primitives) {
+  std::vector<VertexSoup> soups;
+  for (const Primitive* primitive : primitives) {
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitive));
+    soups.push_back(std::move(soup));
+  }
+  return WeldSoups(soups);
+}
+
+AccessorData FloatData(const std::vector<float>& values, uint32_t components) {
+  AccessorData data;
+  data.components = components;
+  data.count = values.size() / components;
+  data.bytes.resize(values.size() * sizeof(float));
+  if (!values.empty()) std::memcpy(data.bytes.data(), values.data(), data.bytes.size());
+  return data;
+}
+
+// Back to the integers that a color came as: unsigned and normalized are all that glTF allows.
+AccessorData ToTypeOf(const AccessorData& original, AccessorData floats) {
+  if (original.type == ComponentType::kFloat) return floats;
+  const size_t size = ComponentSize(original.type);
+  const double scale = size == 1 ? 255.0 : 65535.0;
+  AccessorData data = floats;
+  data.type = original.type;
+  data.normalized = original.normalized;
+  data.bytes.clear();
+  for (uint64_t i = 0; i < floats.count * floats.components; ++i) {
+    const float value = floats.Float(i / floats.components, static_cast<uint32_t>(i % floats.components));
+    const auto k = static_cast<uint32_t>(std::clamp(value * scale + 0.5, 0.0, scale));
+    for (size_t byte = 0; byte < size; ++byte) data.bytes.push_back(static_cast<uint8_t>(k >> (8 * byte)));
+  }
+  return data;
+}
+
+StatusOr<Primitive> ToPrimitive(const VertexSoup& soup, const Primitive& original) {
+  if (soup.triangles.empty()) return Unsupported("would have no triangle left");
+  Primitive primitive;
+  primitive.num_vertices = soup.positions.size();
+  primitive.triangles = soup.triangles;
+  for (const Attribute& attribute : original.attributes) {
+    if (attribute.name == "POSITION") {
+      primitive.attributes.push_back({attribute.name, MakeFloatAccessor(soup.positions)});
+      continue;
+    }
+    const auto found =
+        std::find_if(soup.attributes.begin(), soup.attributes.end(), [&](const VertexSoup::Attribute& candidate) {
+          return candidate.name == attribute.name && candidate.components == attribute.data.components;
+        });
+    if (found == soup.attributes.end()) return InternalError("the simplified surface has lost " + attribute.name);
+    primitive.attributes.push_back(
+        {attribute.name, ToTypeOf(attribute.data, FloatData(found->values, found->components))});
+  }
+  return primitive;
+}
+
+// How much of every target is left to rounding once simplification has had its share: errors add up in squares.
+struct Rest {
+  double distance = 1.0;
+  AttributeTargets attributes;  // shares here, not errors
+};
+
+double RestOf(double error, double target) {
+  constexpr double kLeast = 0.25;
+  constexpr double kMost = 0.9;
+  const double ratio = std::min(error / target, 1.0);
+  return std::clamp(0.95 * std::sqrt(1.0 - ratio * ratio), kLeast, kMost);
+}
+
+double* ShareOf(const MeshAttribute& attribute, Rest* rest) {
+  switch (attribute.kind) {
+    case AttributeKind::kTextureCoordinates:
+      return &rest->attributes.uv_texels;
+    case AttributeKind::kNormal:
+    case AttributeKind::kTangent:
+      return &rest->attributes.normal_degrees;
+    default:
+      return &rest->attributes.color;
+  }
+}
+
+class FamilySimplifier {
+ public:
+  FamilySimplifier(const std::vector<const Primitive*>& primitives, const AttributedMesh& original,
+                   const SurfaceErrorMeter& meter, ErrorTargets error_targets, const AttributeTargets& targets,
+                   const std::function<double(size_t, uint64_t)>& texels_per_unit)
+      : primitives_(primitives), original_(original), meter_(meter), error_targets_(std::move(error_targets)),
+        targets_(targets), texels_per_unit_(texels_per_unit) {}
+
+  // `share` of every target goes to simplification.
+  StatusOr<SimplifiedFamily> Run(double share) const {
+    constexpr int kMostRounds = 6;
+    ErrorTargets targets = error_targets_;
+    targets.distance *= share;
+    for (double& target : targets.attributes) target *= share;
+    LACERTA_ASSIGN_OR_RETURN(const SimplifiedSurface simplified, SimplifyToErrors(original_, meter_, targets));
+    if (!simplified.meets_targets) return Unsupported("no simplified surface is close enough");
+    LACERTA_ASSIGN_OR_RETURN(const std::vector<Primitive> primitives, Split(simplified.mesh));
+    Rest rest;
+    rest.distance = RestOf(simplified.errors.distance, error_targets_.distance);
+    rest.attributes = {1.0, 1.0, 1.0, 1.0};
+    for (size_t a = 0; a < original_.attributes.size(); ++a) {
+      double* own = ShareOf(original_.attributes[a], &rest);
+      *own = std::min(*own, RestOf(simplified.errors.attributes[a].rms_99, error_targets_.attributes[a]));
+    }
+    for (int round = 0; round < kMostRounds; ++round) {
+      LACERTA_ASSIGN_OR_RETURN(SimplifiedFamily family, Encode(simplified.mesh.surface, primitives, rest));
+      LACERTA_ASSIGN_OR_RETURN(const bool met, Judge(&family, &rest));
+      if (met) return family;
+    }
+    return Unsupported("no simplified surface is close enough once it is rounded");
+  }
+
+ private:
+  StatusOr<std::vector<Primitive>> Split(const AttributedMesh& mesh) const {
+    const std::vector<VertexSoup> soups = SplitIntoSoups(mesh, static_cast<uint32_t>(primitives_.size()));
+    std::vector<Primitive> primitives;
+    for (size_t m = 0; m < soups.size(); ++m) {
+      LACERTA_ASSIGN_OR_RETURN(Primitive primitive, ToPrimitive(soups[m], *primitives_[m]));
+      primitives.push_back(std::move(primitive));
+    }
+    return primitives;
+  }
+
+  StatusOr<SimplifiedFamily> Encode(const TriangleMesh& surface, const std::vector<Primitive>& primitives,
+                                    const Rest& rest) const {
+    SimplifiedFamily family;
+    const SharedLattice lattice = FindPositionLattice(surface, error_targets_.distance * rest.distance);
+    family.position_bits = lattice.lattice.bits;
+    AttributeTargets targets = targets_;
+    targets.uv_texels *= rest.attributes.uv_texels;
+    targets.normal_degrees *= rest.attributes.normal_degrees;
+    targets.color *= rest.attributes.color;
+    for (size_t m = 0; m < primitives.size(); ++m) {
+      AttributePrecision attributes = FindAttributeBits(primitives[m], targets, [&](uint64_t set) {
+        return texels_per_unit_(m, set);
+      });
+      LACERTA_ASSIGN_OR_RETURN(DracoEncoded encoded,
+                               EncodeDracoPrimitive(primitives[m], {lattice.lattice, std::move(attributes.bits)}));
+      family.members.push_back(std::move(encoded));
+      family.reports.push_back(std::move(attributes.reports));
+    }
+    return family;
+  }
+
+  // Measures what is decoded and writes that into the reports; what is too far off gets less rest.
+  StatusOr<bool> Judge(SimplifiedFamily* family, Rest* rest) const {
+    constexpr uint64_t kSamples = 100'000;
+    std::vector<const Primitive*> decoded;
+    for (const DracoEncoded& member : family->members) decoded.push_back(&member.decoded);
+    LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, ToMesh(decoded));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, meter_.Measure(mesh, kSamples));
+    bool met = true;
+    const auto judge = [&](double error, double target, double* share) {
+      if (error <= target) return;
+      met = false;
+      *share *= 0.7;
+    };
+    judge(errors.distance, error_targets_.distance, &rest->distance);
+    for (size_t a = 0; a < original_.attributes.size(); ++a) {
+      judge(errors.attributes[a].rms_99, error_targets_.attributes[a], ShareOf(original_.attributes[a], rest));
+    }
+    family->error = errors.distance;
+    for (std::vector<AttributeReport>& reports : family->reports) {
+      for (AttributeReport& report : reports) {
+        for (size_t a = 0; a < original_.attributes.size(); ++a) {
+          const MeshAttribute& attribute = original_.attributes[a];
+          if (attribute.name != report.name) continue;
+          report.error = errors.attributes[a].rms_99;
+          if (attribute.kind == AttributeKind::kTextureCoordinates) {
+            report.error *= targets_.uv_texels / error_targets_.attributes[a];  // of the scale that the target is in
+          }
+        }
+      }
+    }
+    return met;
+  }
+
+  const std::vector<const Primitive*>& primitives_;
+  const AttributedMesh& original_;
+  const SurfaceErrorMeter& meter_;
+  const ErrorTargets error_targets_;
+  const AttributeTargets& targets_;
+  const std::function<double(size_t, uint64_t)>& texels_per_unit_;
+};
+
+uint64_t SizeOf(const SimplifiedFamily& family) {
+  uint64_t size = 0;
+  for (const DracoEncoded& member : family.members) size += member.bytes.size();
+  return size;
+}
+
+}  // namespace
+
+StatusOr<SimplifiedFamily> SimplifyFamily(const std::vector<const Primitive*>& primitives, double error,
+                                          const AttributeTargets& targets, uint64_t texel_side,
+                                          const std::function<double(size_t member, uint64_t set)>& texels_per_unit) {
+  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original, ToMesh(primitives));
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter,
+                           SurfaceErrorMeter::Create(original, static_cast<double>(texel_side)));
+  ErrorTargets error_targets;
+  error_targets.distance = error;
+  for (const MeshAttribute& attribute : original.attributes) {
+    if (attribute.kind == AttributeKind::kTextureCoordinates) {
+      double scale = static_cast<double>(texel_side);
+      const uint64_t set = std::strtoull(attribute.name.c_str() + std::strlen("TEXCOORD_"), nullptr, 10);
+      for (size_t m = 0; m < primitives.size(); ++m) scale = std::max(scale, texels_per_unit(m, set));
+      error_targets.attributes.push_back(targets.uv_texels * static_cast<double>(texel_side) / scale);
+    } else if (attribute.kind == AttributeKind::kColor) {
+      error_targets.attributes.push_back(targets.color * 2.0);  // integers come back rounded
+    } else {
+      error_targets.attributes.push_back(targets.normal_degrees);
+    }
+  }
+  const FamilySimplifier simplifier(primitives, original, meter, error_targets, targets, texels_per_unit);
+  // Where rounding takes more, fewer bits are spent on more vertices; which is smaller the surface tells.
+  StatusOr<SimplifiedFamily> best = Unsupported("no simplified surface is close enough");
+  for (const double share : {0.85}) {
+    StatusOr<SimplifiedFamily> family = simplifier.Run(share);
+    if (!family.ok()) {
+      if (!best.ok()) best = family.status();
+    } else if (!best.ok() || SizeOf(family.value()) < SizeOf(best.value())) {
+      best = std::move(family);
+    }
+  }
+  return best;
+}
+
+}  // namespace lacerta
