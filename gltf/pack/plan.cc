@@ -233,9 +233,14 @@ void PlanFamily(size_t family, Context* context, std::vector<PrimitivePlan>* pla
     chosen = Unsupported(against);
   }
   if (chosen.ok()) least = chosen.value().bytes;
+  std::string simplified_reason;
   if (context->options->simplify && !is_stream) {  // streams have tried a simplified surface themselves
     StatusOr<FamilyCandidate> simplified = Simplified(family, context);
-    if (simplified.ok() && simplified.value().bytes < least) chosen = std::move(simplified);
+    if (simplified.ok() && simplified.value().bytes < least) {
+      chosen = std::move(simplified);
+    } else {
+      simplified_reason = simplified.ok() ? "simplified it would be larger" : "not simplified: " + simplified.status().message();
+    }
   }
   for (size_t m = 0; m < members.size(); ++m) {
     PrimitivePlan& plan = (*plans)[members[m]];
@@ -253,6 +258,7 @@ void PlanFamily(size_t family, Context* context, std::vector<PrimitivePlan>* pla
       plan.smooth_normals = false;
     }
     if (!candidate.report.reason.empty()) AddReason(candidate.report.reason, &report);
+    if (!simplified_reason.empty()) AddReason(simplified_reason, &report);
     report.storage = PrimitiveStorage::kDraco;
     report.bytes_after = candidate.encoded.bytes.size();
     report.error = candidate.report.error;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,7 +26,18 @@ std::optional<AttributeKind> KindOf(const Attribute& attribute) {
   return std::nullopt;
 }
 
-StatusOr<VertexSoup> ToSoup(const Primitive& primitive) {
+// Texels per unit of a member's texture coordinates.
+using TexelScale = std::function<double(size_t member, uint64_t set)>;
+
+uint64_t SetOf(const std::string& name) { return std::strtoull(name.c_str() + std::strlen("TEXCOORD_"), nullptr, 10); }
+
+// Texture coordinates of unlike scales are attributes of their own, each with its own target.
+std::string SoupName(const Attribute& attribute, size_t member, const TexelScale& scale) {
+  if (!BeginsWith(attribute.name, "TEXCOORD_")) return attribute.name;
+  return attribute.name + "/" + std::to_string(scale(member, SetOf(attribute.name)));
+}
+
+StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const TexelScale& scale) {
   VertexSoup soup;
   TriangleMesh surface = Surface(primitive);
   soup.positions = std::move(surface.positions);
@@ -34,7 +46,7 @@ StatusOr<VertexSoup> ToSoup(const Primitive& primitive) {
     if (attribute.name == "POSITION") continue;
     const std::optional<AttributeKind> kind = KindOf(attribute);
     if (!kind.has_value()) return Unsupported("has the attribute " + attribute.name + ", which is not simplified");
-    VertexSoup::Attribute values{attribute.name, *kind, attribute.data.components, {}};
+    VertexSoup::Attribute values{SoupName(attribute, member, scale), *kind, attribute.data.components, {}};
     values.values.reserve(static_cast<size_t>(primitive.num_vertices) * values.components);
     for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
       for (uint32_t c = 0; c < values.components; ++c) values.values.push_back(attribute.data.Float(v, c));
@@ -44,10 +56,10 @@ StatusOr<VertexSoup> ToSoup(const Primitive& primitive) {
   return soup;
 }
 
-StatusOr<AttributedMesh> ToMesh(const std::vector<const Primitive*>& primitives) {
+StatusOr<AttributedMesh> ToMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale) {
   std::vector<VertexSoup> soups;
-  for (const Primitive* primitive : primitives) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitive));
+  for (size_t m = 0; m < primitives.size(); ++m) {
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale));
     soups.push_back(std::move(soup));
   }
   return WeldSoups(soups);
@@ -79,7 +91,8 @@ AccessorData ToTypeOf(const AccessorData& original, AccessorData floats) {
   return data;
 }
 
-StatusOr<Primitive> ToPrimitive(const VertexSoup& soup, const Primitive& original) {
+StatusOr<Primitive> ToPrimitive(const VertexSoup& soup, const Primitive& original, size_t member,
+                                const TexelScale& scale) {
   if (soup.triangles.empty()) return Unsupported("would have no triangle left");
   Primitive primitive;
   primitive.num_vertices = soup.positions.size();
@@ -89,9 +102,10 @@ StatusOr<Primitive> ToPrimitive(const VertexSoup& soup, const Primitive& origina
       primitive.attributes.push_back({attribute.name, MakeFloatAccessor(soup.positions)});
       continue;
     }
+    const std::string name = SoupName(attribute, member, scale);
     const auto found =
         std::find_if(soup.attributes.begin(), soup.attributes.end(), [&](const VertexSoup::Attribute& candidate) {
-          return candidate.name == attribute.name && candidate.components == attribute.data.components;
+          return candidate.name == name && candidate.components == attribute.data.components;
         });
     if (found == soup.attributes.end()) return InternalError("the simplified surface has lost " + attribute.name);
     primitive.attributes.push_back(
@@ -125,11 +139,17 @@ double* ShareOf(const MeshAttribute& attribute, Rest* rest) {
   }
 }
 
+uint64_t SizeOf(const SimplifiedFamily& family) {
+  uint64_t size = 0;
+  for (const DracoEncoded& member : family.members) size += member.bytes.size();
+  return size;
+}
+
 class FamilySimplifier {
  public:
   FamilySimplifier(const std::vector<const Primitive*>& primitives, const AttributedMesh& original,
                    const SurfaceErrorMeter& meter, ErrorTargets error_targets, const AttributeTargets& targets,
-                   const std::function<double(size_t, uint64_t)>& texels_per_unit)
+                   const TexelScale& texels_per_unit)
       : primitives_(primitives), original_(original), meter_(meter), error_targets_(std::move(error_targets)),
         targets_(targets), texels_per_unit_(texels_per_unit) {}
 
@@ -149,12 +169,16 @@ class FamilySimplifier {
       double* own = ShareOf(original_.attributes[a], &rest);
       *own = std::min(*own, RestOf(simplified.errors.attributes[a].rms_99, error_targets_.attributes[a]));
     }
+    std::optional<SimplifiedFamily> best;
     for (int round = 0; round < kMostRounds; ++round) {
       LACERTA_ASSIGN_OR_RETURN(SimplifiedFamily family, Encode(simplified.mesh.surface, primitives, rest));
       LACERTA_ASSIGN_OR_RETURN(const bool met, Judge(&family, &rest));
-      if (met) return family;
+      if (!met && best.has_value()) break;  // the looser one was too loose
+      if (met && best.has_value() && SizeOf(family) >= SizeOf(*best)) break;
+      if (met) best = std::move(family);
     }
-    return Unsupported("no simplified surface is close enough once it is rounded");
+    if (!best.has_value()) return Unsupported("no simplified surface is close enough once it is rounded");
+    return std::move(*best);
   }
 
  private:
@@ -162,7 +186,7 @@ class FamilySimplifier {
     const std::vector<VertexSoup> soups = SplitIntoSoups(mesh, static_cast<uint32_t>(primitives_.size()));
     std::vector<Primitive> primitives;
     for (size_t m = 0; m < soups.size(); ++m) {
-      LACERTA_ASSIGN_OR_RETURN(Primitive primitive, ToPrimitive(soups[m], *primitives_[m]));
+      LACERTA_ASSIGN_OR_RETURN(Primitive primitive, ToPrimitive(soups[m], *primitives_[m], m, texels_per_unit_));
       primitives.push_back(std::move(primitive));
     }
     return primitives;
@@ -189,29 +213,36 @@ class FamilySimplifier {
     return family;
   }
 
-  // Measures what is decoded and writes that into the reports; what is too far off gets less rest.
+  // Measures what is decoded and writes that into the reports. Changes the rest for the next round: less for what is too
+  // far off; where nothing is, more for what keeps far within its target.
   StatusOr<bool> Judge(SimplifiedFamily* family, Rest* rest) const {
     constexpr uint64_t kSamples = 100'000;
     std::vector<const Primitive*> decoded;
     for (const DracoEncoded& member : family->members) decoded.push_back(&member.decoded);
-    LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, ToMesh(decoded));
+    LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, ToMesh(decoded, texels_per_unit_));
     LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, meter_.Measure(mesh, kSamples));
-    bool met = true;
-    const auto judge = [&](double error, double target, double* share) {
-      if (error <= target) return;
-      met = false;
-      *share *= 0.7;
-    };
-    judge(errors.distance, error_targets_.distance, &rest->distance);
+    const bool met = WorstRatio(errors, error_targets_) <= 1.0;
+    std::map<double*, double> ratios;  // the worst for each share
+    ratios[&rest->distance] = errors.distance / error_targets_.distance;
     for (size_t a = 0; a < original_.attributes.size(); ++a) {
-      judge(errors.attributes[a].rms_99, error_targets_.attributes[a], ShareOf(original_.attributes[a], rest));
+      double& ratio = ratios[ShareOf(original_.attributes[a], rest)];
+      ratio = std::max(ratio, errors.attributes[a].rms_99 / error_targets_.attributes[a]);
     }
+    constexpr double kFarWithin = 0.85;
+    for (const auto& [share, ratio] : ratios) {
+      if (ratio > 1.0) *share *= 0.7;
+      if (met && ratio < kFarWithin && share != &rest->distance) *share *= 1.0 / std::max(ratio, 0.5);
+    }
+    // Positions that slide along the surface take their texture with them.
+    const bool distance_met = ratios[&rest->distance] <= 1.0;
+    if (!met && distance_met) rest->distance *= 0.6;
     family->error = errors.distance;
-    for (std::vector<AttributeReport>& reports : family->reports) {
-      for (AttributeReport& report : reports) {
+    for (size_t m = 0; m < family->reports.size(); ++m) {
+      for (AttributeReport& report : family->reports[m]) {
         for (size_t a = 0; a < original_.attributes.size(); ++a) {
           const MeshAttribute& attribute = original_.attributes[a];
-          if (attribute.name != report.name) continue;
+          const Attribute* own = primitives_[m]->Find(report.name);
+          if (own == nullptr || attribute.name != SoupName(*own, m, texels_per_unit_)) continue;
           report.error = errors.attributes[a].rms_99;
           if (attribute.kind == AttributeKind::kTextureCoordinates) {
             report.error *= targets_.uv_texels / error_targets_.attributes[a];  // of the scale that the target is in
@@ -227,30 +258,22 @@ class FamilySimplifier {
   const SurfaceErrorMeter& meter_;
   const ErrorTargets error_targets_;
   const AttributeTargets& targets_;
-  const std::function<double(size_t, uint64_t)>& texels_per_unit_;
+  const TexelScale& texels_per_unit_;
 };
-
-uint64_t SizeOf(const SimplifiedFamily& family) {
-  uint64_t size = 0;
-  for (const DracoEncoded& member : family.members) size += member.bytes.size();
-  return size;
-}
 
 }  // namespace
 
 StatusOr<SimplifiedFamily> SimplifyFamily(const std::vector<const Primitive*>& primitives, double error,
                                           const AttributeTargets& targets, uint64_t texel_side,
-                                          const std::function<double(size_t member, uint64_t set)>& texels_per_unit) {
-  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original, ToMesh(primitives));
+                                          const TexelScale& texels_per_unit) {
+  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original, ToMesh(primitives, texels_per_unit));
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter,
                            SurfaceErrorMeter::Create(original, static_cast<double>(texel_side)));
   ErrorTargets error_targets;
   error_targets.distance = error;
   for (const MeshAttribute& attribute : original.attributes) {
     if (attribute.kind == AttributeKind::kTextureCoordinates) {
-      double scale = static_cast<double>(texel_side);
-      const uint64_t set = std::strtoull(attribute.name.c_str() + std::strlen("TEXCOORD_"), nullptr, 10);
-      for (size_t m = 0; m < primitives.size(); ++m) scale = std::max(scale, texels_per_unit(m, set));
+      const double scale = std::strtod(attribute.name.c_str() + attribute.name.find('/') + 1, nullptr);
       error_targets.attributes.push_back(targets.uv_texels * static_cast<double>(texel_side) / scale);
     } else if (attribute.kind == AttributeKind::kColor) {
       error_targets.attributes.push_back(targets.color * 2.0);  // integers come back rounded
@@ -259,17 +282,8 @@ StatusOr<SimplifiedFamily> SimplifyFamily(const std::vector<const Primitive*>& p
     }
   }
   const FamilySimplifier simplifier(primitives, original, meter, error_targets, targets, texels_per_unit);
-  // Where rounding takes more, fewer bits are spent on more vertices; which is smaller the surface tells.
-  StatusOr<SimplifiedFamily> best = Unsupported("no simplified surface is close enough");
-  for (const double share : {0.85}) {
-    StatusOr<SimplifiedFamily> family = simplifier.Run(share);
-    if (!family.ok()) {
-      if (!best.ok()) best = family.status();
-    } else if (!best.ok() || SizeOf(family.value()) < SizeOf(best.value())) {
-      best = std::move(family);
-    }
-  }
-  return best;
+  constexpr double kShare = 0.85;  // to simplification: what rounding adds comes on top in squares
+  return simplifier.Run(kShare);
 }
 
 }  // namespace lacerta

@@ -18,6 +18,8 @@ AttributeKind KindOf(const std::string& name) {
   return name == "TANGENT" ? AttributeKind::kTangent : AttributeKind::kGeneric;
 }
 
+}  // namespace
+
 VertexSoup ToSoup(const Primitive& primitive) {
   VertexSoup soup;
   TriangleMesh surface = Surface(primitive);
@@ -33,8 +35,6 @@ VertexSoup ToSoup(const Primitive& primitive) {
   }
   return soup;
 }
-
-}  // namespace
 
 StatusOr<std::vector<NamedSurface>> ReadGltfSurfaces(const std::string& path) {
   LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(path));

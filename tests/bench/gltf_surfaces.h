@@ -5,10 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "document/primitive.h"
 #include "lacerta/attributed_mesh.h"
 #include "lacerta/status.h"
 
 namespace lacerta {
+
+// Positions, triangles and the attributes that can be interpolated.
+VertexSoup ToSoup(const Primitive& primitive);
 
 struct NamedSurface {
   std::string name;

@@ -1,0 +1,239 @@
+// One asset packed, beside stock Draco with the fewest bits that meet the same errors, measured in the same way:
+//   asset_report ORIGINAL.glb PACKED.glb UNPACKED.glb [--psnr DB] [--texels N] [--degrees N]
+// Prints one line of JSON. Errors are those of the worst mesh (meshes that touch count as one); UV in texels of 1024.
+#include <draco/compression/expert_encode.h>
+#include <draco/mesh/mesh.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "bench/gltf_surfaces.h"
+#include "document/draco_primitive.h"
+#include "document/place.h"
+#include "document/primitive.h"
+#include "lacerta/file_io.h"
+#include "lacerta/gltf.h"
+#include "pack/family.h"
+#include "remesh/simplify_to_errors.h"
+
+namespace lacerta {
+namespace {
+
+struct Errors {
+  double psnr = kMaxPsnr, texels = 0.0, degrees = 0.0;
+};
+
+struct Asset {
+  GltfDocument document;
+  std::vector<Place> places;
+  std::vector<Primitive> primitives;
+};
+
+StatusOr<Asset> Read(const std::string& path) {
+  Asset asset;
+  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(path));
+  LACERTA_ASSIGN_OR_RETURN(asset.document, ParseGltf(bytes, ""));
+  for (const Place& place : AllPlaces(asset.document)) {
+    StatusOr<Primitive> primitive = ReadPrimitive(asset.document, PrimitiveAt(asset.document, place), {});
+    if (!primitive.ok()) continue;
+    asset.places.push_back(place);
+    asset.primitives.push_back(std::move(primitive).value());
+  }
+  return asset;
+}
+
+// What the errors of a family are held against.
+struct Judge {
+  std::vector<size_t> members;
+  double scale = 0.0;  // of the PSNR: the scene's diagonal in mesh units
+  SurfaceErrorMeter meter;
+  std::vector<AttributeKind> kinds;
+};
+
+StatusOr<AttributedMesh> Join(const std::vector<Primitive>& primitives, const std::vector<size_t>& members) {
+  std::vector<VertexSoup> soups;
+  for (const size_t member : members) soups.push_back(ToSoup(primitives[member]));
+  return WeldSoups(soups);
+}
+
+StatusOr<std::vector<Judge>> MakeJudges(const Asset& original) {
+  std::vector<std::vector<Place>> places;
+  for (const Place& place : original.places) places.push_back({place});
+  std::vector<PlacedSurface> surfaces;
+  for (size_t i = 0; i < places.size(); ++i) surfaces.push_back({&places[i], Surface(original.primitives[i])});
+  LACERTA_ASSIGN_OR_RETURN(const Families families, FindFamilies(original.document, surfaces));
+  std::vector<Judge> judges;
+  for (size_t f = 0; f < families.families.size(); ++f) {
+    const Family& family = families.families[f];
+    LACERTA_ASSIGN_OR_RETURN(AttributedMesh mesh, Join(original.primitives, family.members));
+    StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(mesh);
+    if (!meter.ok()) continue;  // nothing to see
+    const double scale = FamilyError(families, f, 60.0) * 1000.0;
+    Judge judge{family.members, scale, std::move(meter).value(), {}};
+    for (const MeshAttribute& attribute : mesh.attributes) judge.kinds.push_back(attribute.kind);
+    judges.push_back(std::move(judge));
+  }
+  return judges;
+}
+
+StatusOr<Errors> MeasureAll(const std::vector<Judge>& judges, const std::vector<Primitive>& primitives) {
+  constexpr uint64_t kSamples = 50'000;
+  Errors worst;
+  for (const Judge& judge : judges) {
+    LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, Join(primitives, judge.members));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, judge.meter.Measure(mesh, kSamples));
+    worst.psnr = std::min(worst.psnr, Psnr(errors.distance, judge.scale));
+    for (size_t a = 0; a < judge.kinds.size(); ++a) {
+      if (judge.kinds[a] == AttributeKind::kTextureCoordinates) {
+        worst.texels = std::max(worst.texels, errors.attributes[a].rms_99);
+      } else if (judge.kinds[a] == AttributeKind::kNormal) {
+        worst.degrees = std::max(worst.degrees, errors.attributes[a].rms_99);
+      }
+    }
+  }
+  return worst;
+}
+
+using Bits = std::array<int, 3>;  // positions, texture coordinates, directions
+
+// As the stock tools do it: every primitive by itself, over its own range.
+StatusOr<uint64_t> EncodeStock(const std::vector<Primitive>& primitives, const Bits& bits, std::vector<Primitive>* decoded) {
+  uint64_t sum = 0;
+  decoded->clear();
+  for (const Primitive& primitive : primitives) {
+    draco::Mesh mesh;
+    mesh.set_num_points(static_cast<uint32_t>(primitive.num_vertices));
+    for (const Triangle& t : primitive.triangles) {
+      mesh.AddFace({{draco::PointIndex(t[0]), draco::PointIndex(t[1]), draco::PointIndex(t[2])}});
+    }
+    std::vector<DracoAttributeId> ids;
+    std::vector<int> bits_of;
+    for (const Attribute& attribute : primitive.attributes) {
+      const std::string& name = attribute.name;
+      const bool is_texture = name.rfind("TEXCOORD_", 0) == 0, is_position = name == "POSITION", is_normal = name == "NORMAL";
+      const bool is_float = attribute.data.type == ComponentType::kFloat;
+      const size_t size = attribute.data.components * ComponentSize(attribute.data.type);
+      draco::GeometryAttribute description;
+      const draco::DataType type = is_float                                          ? draco::DT_FLOAT32
+                                   : attribute.data.type == ComponentType::kUint8  ? draco::DT_UINT8
+                                   : attribute.data.type == ComponentType::kUint16 ? draco::DT_UINT16
+                                                                                     : draco::DT_UINT32;
+      description.Init(is_position  ? draco::GeometryAttribute::POSITION
+                       : is_normal  ? draco::GeometryAttribute::NORMAL
+                       : is_texture ? draco::GeometryAttribute::TEX_COORD
+                                    : draco::GeometryAttribute::GENERIC,
+                       nullptr, static_cast<int8_t>(attribute.data.components), type, attribute.data.normalized,
+                       static_cast<int64_t>(size), 0);
+      const int id = mesh.AddAttribute(description, true, static_cast<uint32_t>(attribute.data.count));
+      mesh.attribute(id)->buffer()->Write(0, attribute.data.bytes.data(), attribute.data.bytes.size());
+      ids.push_back({name, mesh.attribute(id)->unique_id()});
+      constexpr int kOtherBits = 8;  // colors, weights
+      bits_of.push_back(!is_float ? 0 : is_position ? bits[0] : is_texture ? bits[1] : is_normal || name == "TANGENT" ? bits[2] : kOtherBits);
+    }
+    if (!mesh.DeduplicateAttributeValues()) return Unsupported("Draco refuses the attributes");
+    mesh.DeduplicatePointIds();
+    draco::ExpertEncoder encoder(mesh);
+    encoder.SetSpeedOptions(0, 0);
+    encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
+    for (size_t a = 0; a < bits_of.size(); ++a) {
+      if (bits_of[a] > 0) encoder.SetAttributeQuantization(static_cast<int>(a), bits_of[a]);
+    }
+    draco::EncoderBuffer buffer;
+    if (!encoder.EncodeToBuffer(&buffer).ok()) return Unsupported("Draco refuses a primitive");
+    sum += buffer.size();
+    const Span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(buffer.data()), buffer.size());
+    LACERTA_ASSIGN_OR_RETURN(Primitive result, DecodeDracoPrimitive(bytes, ids, {}));
+    decoded->push_back(std::move(result));
+  }
+  return sum;
+}
+
+uint64_t BorderEdges(const TriangleMesh& mesh) {
+  const auto key = [](const Vec3f& p) { return std::make_tuple(p.x, p.y, p.z); };
+  std::map<std::tuple<float, float, float>, size_t> ids;
+  std::map<std::pair<size_t, size_t>, int> edges;
+  for (const Triangle& t : mesh.triangles) {
+    size_t v[3];
+    for (size_t i = 0; i < 3; ++i) v[i] = ids.emplace(key(mesh.positions[t[i]]), ids.size()).first->second;
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
+    for (int i = 0; i < 3; ++i) ++edges[std::minmax(v[i], v[(i + 1) % 3])];
+  }
+  return static_cast<uint64_t>(std::count_if(edges.begin(), edges.end(), [](const auto& e) { return e.second == 1; }));
+}
+
+Status Report(const std::vector<std::string>& files, const Errors& wanted) {
+  LACERTA_ASSIGN_OR_RETURN(const Asset original, Read(files[0]));
+  LACERTA_ASSIGN_OR_RETURN(const Bytes packed, ReadFile(files[1]));
+  LACERTA_ASSIGN_OR_RETURN(const Asset unpacked, Read(files[2]));
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<Judge> judges, MakeJudges(original));
+  LACERTA_ASSIGN_OR_RETURN(const Errors ours, MeasureAll(judges, unpacked.primitives));
+  LACERTA_ASSIGN_OR_RETURN(const FlattenResult before, FlattenGltf(ReadFile(files[0]).value(), {}));
+  LACERTA_ASSIGN_OR_RETURN(const FlattenResult after, FlattenGltf(ReadFile(files[2]).value(), {}));
+
+  // Each kind of bits from few to many, positions first: coarse positions move the texture too.
+  Bits bits = {6, 4, 3};
+  constexpr int kMostBits = 20;
+  std::vector<Primitive> decoded;
+  Errors stock;
+  uint64_t stock_bytes = 0;
+  for (;;) {
+    LACERTA_ASSIGN_OR_RETURN(stock_bytes, EncodeStock(original.primitives, bits, &decoded));
+    const StatusOr<Errors> errors = MeasureAll(judges, decoded);  // a group may have lost its area
+    stock = errors.ok() ? errors.value() : Errors{0.0, 1e9, 1e9};
+    const bool far = stock.psnr < wanted.psnr, blurred = stock.texels > wanted.texels, tilted = stock.degrees > wanted.degrees;
+    if (!far && !blurred && !tilted) break;
+    const Bits last = bits;
+    if (far) {
+      bits[0] = std::min(bits[0] + 1, kMostBits);
+    } else {
+      if (blurred) bits[1] = std::min(bits[1] + 1, kMostBits);
+      if (tilted) bits[2] = std::min(bits[2] + 1, kMostBits);
+      // More bits of texture coordinates do not help where positions slide.
+      if (blurred && bits[1] > 12 && bits[0] < kMostBits) ++bits[0], bits[1] = 10;
+    }
+    if (bits == last) break;
+  }
+  uint64_t vertices = 0;
+  for (const Primitive& primitive : original.primitives) vertices += primitive.num_vertices;
+  std::printf("{\"vertices\": %llu, \"psnr\": %.2f, \"texels\": %.3f, \"degrees\": %.3f, \"borderEdgesBefore\": %llu, \"borderEdgesAfter\": %llu, "
+              "\"stockBytes\": %llu, \"stockBits\": [%d, %d, %d], \"stockPsnr\": %.2f, \"stockTexels\": %.3f, \"stockDegrees\": %.3f}\n",
+              static_cast<unsigned long long>(vertices), ours.psnr, ours.texels, ours.degrees,
+              static_cast<unsigned long long>(BorderEdges(before.mesh)), static_cast<unsigned long long>(BorderEdges(after.mesh)),
+              static_cast<unsigned long long>(stock_bytes), bits[0], bits[1], bits[2], stock.psnr, stock.texels, stock.degrees);
+  return Status();
+}
+
+}  // namespace
+}  // namespace lacerta
+
+int main(int argc, char** argv) {
+  lacerta::Errors wanted{70.0, 1.0, 2.0};
+  std::vector<std::string> files;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    double* number = argument == "--psnr"      ? &wanted.psnr
+                     : argument == "--texels"  ? &wanted.texels
+                     : argument == "--degrees" ? &wanted.degrees
+                                               : nullptr;
+    if (number != nullptr && i + 1 < argc) {
+      *number = std::atof(argv[++i]);
+    } else {
+      files.push_back(argument);
+    }
+  }
+  if (files.size() != 3) {
+    std::fprintf(stderr, "usage: asset_report ORIGINAL PACKED UNPACKED [--psnr DB] [--texels N] [--degrees N]\n");
+    return 1;
+  }
+  const lacerta::Status status = lacerta::Report(files, wanted);
+  if (!status.ok()) std::fprintf(stderr, "%s: %s\n", files[0].c_str(), status.message().c_str());
+  return status.ok() ? 0 : 1;
+}
