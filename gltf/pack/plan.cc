@@ -322,9 +322,17 @@ PrimitivePlan StartPlan(const GltfDocument& document, const Source& source) {
   return plan;
 }
 
-}  // namespace
+// A budget means the whole file where more than one stream has to share it; those streams alone meet theirs to 2 %.
+bool IsSharedBudget(const GltfDocument& document, const PackOptions& options) {
+  if (options.encode.target.kind != EncodeTarget::Kind::kBytes) return false;
+  const std::vector<Place> places = AllPlaces(document);
+  if (places.size() != 1) return true;
+  const Json* attributes = Find(PrimitiveAt(document, places[0]), "attributes");
+  return attributes != nullptr && attributes->size() > 1;
+}
 
-StatusOr<std::vector<PrimitivePlan>> PlanPrimitives(const GltfDocument& document, const PackOptions& options) {
+// Plans for errors.
+StatusOr<std::vector<PrimitivePlan>> PlanForErrors(const GltfDocument& document, const PackOptions& options) {
   LACERTA_ASSIGN_OR_RETURN(Context context, MakeContext(document, options));
   std::vector<PrimitivePlan> plans;
   std::vector<bool> progressive;
@@ -365,6 +373,48 @@ StatusOr<std::vector<PrimitivePlan>> PlanPrimitives(const GltfDocument& document
     if (plan.report.storage == PrimitiveStorage::kUntouched) plan.report.bytes_after = plan.report.bytes_before;
   }
   return plans;
+}
+
+uint64_t BytesOf(const std::vector<PrimitivePlan>& plans) {
+  uint64_t sum = 0;
+  for (const PrimitivePlan& plan : plans) sum += plan.report.bytes_after;
+  return sum;
+}
+
+// The scene's error is the same everywhere, in world units, so a byte more lowers it about as much in one mesh as in
+// another; the smallest error whose meshes fit into the budget is looked for. Attributes are let go with the positions.
+StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const GltfDocument& document, const PackOptions& options) {
+  constexpr int kMostTrials = 9;
+  constexpr double kGoodEnough = 0.98;
+  constexpr double kAttributesFrom = 70.0;  // dB: above, their own targets hold
+  const auto budget = options.encode.target.value;
+  double low = 20.0;
+  double high = 110.0;
+  std::optional<std::vector<PrimitivePlan>> best;
+  for (int trial = 0; trial < kMostTrials; ++trial) {
+    const double psnr = trial == 0 ? kAttributesFrom : (low + high) / 2.0;
+    PackOptions at = options;
+    at.encode.target = {EncodeTarget::Kind::kPsnr, psnr};
+    const double slack = std::max(1.0, std::pow(10.0, (kAttributesFrom - psnr) / 20.0));
+    for (double* target : {&at.attributes.uv_texels, &at.attributes.normal_degrees, &at.attributes.color}) *target *= slack;
+    at.attributes.normal_degrees = std::min(at.attributes.normal_degrees, 30.0);
+    LACERTA_ASSIGN_OR_RETURN(std::vector<PrimitivePlan> plans, PlanForErrors(document, at));
+    const auto bytes = static_cast<double>(BytesOf(plans));
+    const bool fits = bytes <= budget;
+    (fits ? low : high) = psnr;
+    // Where nothing fits, the smallest is the best there is.
+    const double known = best.has_value() ? static_cast<double>(BytesOf(*best)) : 0.0;
+    const bool better = !best.has_value() || (fits ? known > budget || bytes > known : bytes < known);
+    if (better) best = std::move(plans);
+    if (fits && bytes >= kGoodEnough * budget) break;
+  }
+  return std::move(*best);
+}
+
+}  // namespace
+
+StatusOr<std::vector<PrimitivePlan>> PlanPrimitives(const GltfDocument& document, const PackOptions& options) {
+  return IsSharedBudget(document, options) ? PlanForBytes(document, options) : PlanForErrors(document, options);
 }
 
 }  // namespace lacerta

@@ -70,8 +70,8 @@ bool MissesTarget(const EncodeTarget& target, const PackReport& report) {
   double bytes = 0.0;
   for (const PrimitiveReport& primitive : report.primitives) {
     const bool progressive = primitive.storage == PrimitiveStorage::kProgressive;
-    if (progressive) bytes += static_cast<double>(primitive.bytes_after);
-    if (target.kind == EncodeTarget::Kind::kBytes) continue;  // shared among the meshes
+    bytes += static_cast<double>(primitive.bytes_after);
+    if (target.kind == EncodeTarget::Kind::kBytes) continue;  // the whole file's
     if (target.kind == EncodeTarget::Kind::kBitsPerVertex) {
       if (progressive && MissesTarget(target, primitive.encode)) return true;
     } else if (primitive.storage != PrimitiveStorage::kUntouched) {

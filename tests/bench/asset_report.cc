@@ -85,7 +85,7 @@ StatusOr<std::vector<Judge>> MakeJudges(const Asset& original) {
 }
 
 StatusOr<Errors> MeasureAll(const std::vector<Judge>& judges, const std::vector<Primitive>& primitives) {
-  constexpr uint64_t kSamples = 50'000;
+  constexpr uint64_t kSamples = 20'000;
   Errors worst;
   for (const Judge& judge : judges) {
     LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, Join(primitives, judge.members));
@@ -179,7 +179,7 @@ Status Report(const std::vector<std::string>& files, const Errors& wanted) {
   LACERTA_ASSIGN_OR_RETURN(const FlattenResult after, FlattenGltf(ReadFile(files[2]).value(), {}));
 
   // Each kind of bits from few to many, positions first: coarse positions move the texture too.
-  Bits bits = {6, 4, 3};
+  Bits bits = {7, 6, 4};
   constexpr int kMostBits = 20;
   std::vector<Primitive> decoded;
   Errors stock;

@@ -37,7 +37,8 @@ struct AttributeTargets {
 };
 
 struct PackOptions {
-  // For every mesh by itself; a target in bytes is shared among the progressive meshes by their vertices.
+  // For the whole asset: bytes are those of all its geometry, errors are relative to the diagonal of its default scene.
+  // No mesh gets worse than 40 dB of its own diagonal for an error that asks for more.
   EncodeOptions encode;
   AttributeTargets attributes;
   // Whether surfaces with attributes may be simplified where that is smaller and the errors are met.
