@@ -47,8 +47,9 @@ std::optional<Tolerance> ToleranceOf(const Attribute& attribute, const Attribute
     const uint64_t set = std::strtoull(name.c_str() + std::char_traits<char>::length("TEXCOORD_"), nullptr, 10);
     return Tolerance{targets.uv_texels, texels_per_unit(set), false, "texels"};
   }
-  if (BeginsWith(name, "COLOR_")) return Tolerance{targets.color, 1.0, false, ""};
-  if (BeginsWith(name, "WEIGHTS_")) return Tolerance{targets.weight, 1.0, false, ""};
+  const double components = std::sqrt(attribute.data.components);  // theirs are per component
+  if (BeginsWith(name, "COLOR_")) return Tolerance{targets.color * components, 1.0, false, ""};
+  if (BeginsWith(name, "WEIGHTS_")) return Tolerance{targets.weight * components, 1.0, false, ""};
   return std::nullopt;
 }
 

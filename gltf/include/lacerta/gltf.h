@@ -31,7 +31,7 @@ struct AttributeTargets {
   double uv_texels = 1.0;
   // Of normals and tangents. Two degrees are below what a mesh at 70 dB shows of its own shape.
   double normal_degrees = 2.0;
-  // As 8-bit integers do it, the coarsest that core glTF has: 1 / (255 sqrt(12)).
+  // Of each component, as 8-bit integers do it, the coarsest that core glTF has: 1 / (255 sqrt(12)).
   double color = 0.00113;
   double weight = 0.00113;
 };
