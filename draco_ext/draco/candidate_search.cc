@@ -21,7 +21,7 @@ constexpr double kFirstLambda = 1.2e-4;  // of the squared distance aimed at, pe
 constexpr double kUsualPsnr = 70;        // where to begin when only the rate is given
 
 // What counts as met: [psnr, psnr + 0.3) and (0.98, 1] of the bytes, with a margin for the noise of the measure.
-constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.2;
+constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.2, kPsnrNear = 0.1;
 constexpr double kBytesSlack = 0.018;
 // What is aimed at lies inside of that, so that jumps of the curve hardly ever skip it.
 constexpr double kPsnrAim = 0.06, kBytesAim = 0.005;
@@ -221,7 +221,7 @@ StatusOr<MeasuredStream> CandidateSearch::MeetQuality() {
 
   std::map<double, double> measured;  // dB by ln(lambda)
   std::optional<Attempt> unmeasured;
-  for (int i = 0; i < kEstimatedTries && !(is_done() && i >= effort_.least_tries) && measurements_ < kMostMeasurements; ++i) {
+  for (int i = 0; i < kEstimatedTries && !(is_done() && excess(*best) <= kPsnrNear && i >= effort_.least_tries) && measurements_ < kMostMeasurements; ++i) {
     const double log_lambda = NextGuess();
     StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes, target_.quality_layers);
     if (!tried.ok() && (best || unmeasured)) break;
