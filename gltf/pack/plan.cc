@@ -7,7 +7,7 @@
 #include "document/normals.h"
 #include "lacerta/surface_distance.h"
 #include "pack/family.h"
-#include "pack/precision.h"
+#include "pack/rounded.h"
 #include "pack/simplified.h"
 #include "pack/texel_scale.h"
 #include "pack/vertex_match.h"
@@ -45,7 +45,6 @@ struct Context {
   std::vector<Source> sources;
   std::vector<size_t> family_of;  // parallel to `sources`; kNone where there is no primitive
   Families families;
-  std::vector<std::optional<SharedLattice>> lattices;  // parallel to families
   uint64_t texel_side = 1024;
 };
 constexpr size_t kNone = ~size_t{0};
@@ -69,27 +68,11 @@ StatusOr<Context> MakeContext(const GltfDocument& document, const PackOptions& o
   for (Family& family : context.families.families) {
     for (size_t& member : family.members) member = source_of[member];
   }
-  context.lattices.resize(context.families.families.size());
   return context;
 }
 
 double ErrorOf(const Context& context, size_t family) {
   return FamilyError(context.families, family, TargetPsnr(context.options->encode.target));
-}
-
-const SharedLattice& LatticeOf(size_t family, Context* context) {
-  std::optional<SharedLattice>& lattice = context->lattices[family];
-  if (!lattice.has_value()) {
-    TriangleMesh all;
-    for (const size_t member : context->families.families[family].members) {
-      const TriangleMesh part = Surface(*context->sources[member].primitive);
-      const auto offset = static_cast<uint32_t>(all.positions.size());
-      all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
-      for (const Triangle& t : part.triangles) all.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-    }
-    lattice = FindPositionLattice(all, ErrorOf(*context, family));
-  }
-  return *lattice;
 }
 
 // Why it cannot be progressive in this version; empty when it can. Sets *smooth where normals go with the surface.
@@ -160,49 +143,55 @@ double TexelsOf(const Context& context, size_t index, uint64_t set) {
   return TexelsPerUnit(*context.document, context.sources[index].places, set, context.texel_side);
 }
 
-// With all vertices.
-StatusOr<DracoCandidate> EncodeSource(size_t index, Context* context) {
-  const Source& source = context->sources[index];
-  const size_t family = context->family_of[index];
-  const SharedLattice& lattice = LatticeOf(family, context);
-  AttributePrecision attributes =
-      FindAttributeBits(*source.primitive, context->options->attributes,
-                        [&](uint64_t set) { return TexelsOf(*context, index, set); });
-  const DracoPrecision precision = {lattice.lattice, std::move(attributes.bits)};
-  DracoCandidate candidate;
-  LACERTA_ASSIGN_OR_RETURN(candidate.encoded, EncodeDracoPrimitive(*source.primitive, precision));
-  if (!source.targets.empty() && !ReorderTargets(source, precision, candidate.encoded.decoded, &candidate.targets)) {
-    return Unsupported("has morph targets that tell apart what its other attributes do not");
+std::vector<const Primitive*> PrimitivesOf(const Context& context, size_t family) {
+  std::vector<const Primitive*> primitives;
+  for (const size_t member : context.families.families[family].members) {
+    primitives.push_back(&*context.sources[member].primitive);
   }
-  candidate.report.error = lattice.error;
-  candidate.report.position_bits = lattice.lattice.bits;
-  candidate.report.attributes = std::move(attributes.reports);
-  return candidate;
+  return primitives;
 }
 
-StatusOr<FamilyCandidate> WithAllVertices(size_t family, Context* context) {
+TexelScale ScaleOf(const Context& context, size_t family) {
+  return [&context, family](size_t member, uint64_t set) {
+    return TexelsOf(context, context.families.families[family].members[member], set);
+  };
+}
+
+// With all vertices. Sets *everywhere to RoundedFamily's.
+StatusOr<FamilyCandidate> WithAllVertices(size_t family, const Context& context, std::vector<double>* everywhere) {
+  const std::vector<size_t>& members = context.families.families[family].members;
+  LACERTA_ASSIGN_OR_RETURN(RoundedFamily rounded,
+                           RoundFamily(PrimitivesOf(context, family), ErrorOf(context, family),
+                                       context.options->attributes, context.texel_side, ScaleOf(context, family)));
+  *everywhere = std::move(rounded.everywhere);
   FamilyCandidate candidate;
-  for (const size_t member : context->families.families[family].members) {
-    StatusOr<DracoCandidate> encoded = EncodeSource(member, context);
-    if (!encoded.ok()) return encoded.status();
-    candidate.members.push_back(std::move(encoded).value());
+  for (size_t m = 0; m < members.size(); ++m) {
+    const Source& source = context.sources[members[m]];
+    DracoCandidate member;
+    member.encoded = std::move(rounded.members[m]);
+    if (!source.targets.empty() && !ReorderTargets(source, rounded.precisions[m], member.encoded.decoded, &member.targets)) {
+      return Unsupported("has morph targets that tell apart what its other attributes do not");
+    }
+    member.report.error = rounded.lattice.error;
+    member.report.position_bits = rounded.lattice.lattice.bits;
+    member.report.attributes = std::move(rounded.reports[m]);
+    candidate.members.push_back(std::move(member));
   }
   candidate.bytes = StoredBytes(candidate);
   return candidate;
 }
 
-StatusOr<FamilyCandidate> Simplified(size_t family, Context* context) {
-  const std::vector<size_t>& members = context->families.families[family].members;
-  std::vector<const Primitive*> primitives;
+StatusOr<FamilyCandidate> Simplified(size_t family, const Context& context, const std::vector<double>& everywhere) {
+  const std::vector<size_t>& members = context.families.families[family].members;
   for (const size_t member : members) {
-    if (!context->sources[member].targets.empty()) return Unsupported("has morph targets");
-    primitives.push_back(&*context->sources[member].primitive);
+    if (!context.sources[member].targets.empty()) return Unsupported("has morph targets");
   }
-  LACERTA_ASSIGN_OR_RETURN(SimplifiedFamily simplified,
-                           SimplifyFamily(primitives, ErrorOf(*context, family), context->options->attributes,
-                                          context->texel_side, [&](size_t member, uint64_t set) {
-                                            return TexelsOf(*context, members[member], set);
-                                          }));
+  const std::vector<const Primitive*> primitives = PrimitivesOf(context, family);
+  LACERTA_ASSIGN_OR_RETURN(
+      SimplifiedFamily simplified,
+      SimplifyFamily(primitives, ErrorOf(context, family), context.options->attributes, context.texel_side,
+                     ScaleOf(context, family),
+                     context.options->attributes.normals_everywhere ? everywhere : std::vector<double>()));
   FamilyCandidate candidate;
   for (size_t m = 0; m < members.size(); ++m) {
     DracoCandidate member;
@@ -220,13 +209,14 @@ StatusOr<FamilyCandidate> Simplified(size_t family, Context* context) {
 
 // The smallest of what there is, Draco with all vertices and Draco of a simplified surface, for a whole family: one that
 // stayed as it is would come apart from neighbors that are rounded.
-void PlanFamily(size_t family, Context* context, std::vector<PrimitivePlan>* plans) {
-  const std::vector<size_t>& members = context->families.families[family].members;
+void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan>* plans) {
+  const std::vector<size_t>& members = context.families.families[family].members;
   const bool is_stream = (*plans)[members[0]].progressive.has_value();
   uint64_t least = 0;
   for (const size_t member : members) least += (*plans)[member].report.bytes_before;
   if (is_stream) least = std::min(least, (*plans)[members[0]].progressive->stream.size() + kDracoJsonBytes + kProgressiveJsonBytes);
-  StatusOr<FamilyCandidate> chosen = WithAllVertices(family, context);
+  std::vector<double> everywhere;
+  StatusOr<FamilyCandidate> chosen = WithAllVertices(family, context, &everywhere);
   std::string against = chosen.ok() ? "" : chosen.status().message();
   if (chosen.ok() && chosen.value().bytes >= least) {
     against = "compressed it would be larger (" + std::to_string(chosen.value().bytes) + " bytes with their description)";
@@ -234,8 +224,8 @@ void PlanFamily(size_t family, Context* context, std::vector<PrimitivePlan>* pla
   }
   if (chosen.ok()) least = chosen.value().bytes;
   std::string simplified_reason;
-  if (context->options->simplify && !is_stream) {  // streams have tried a simplified surface themselves
-    StatusOr<FamilyCandidate> simplified = Simplified(family, context);
+  if (context.options->simplify && !is_stream) {  // streams have tried a simplified surface themselves
+    StatusOr<FamilyCandidate> simplified = Simplified(family, context, everywhere);
     if (simplified.ok() && simplified.value().bytes < least) {
       chosen = std::move(simplified);
     } else {
@@ -262,7 +252,7 @@ void PlanFamily(size_t family, Context* context, std::vector<PrimitivePlan>* pla
     report.storage = PrimitiveStorage::kDraco;
     report.bytes_after = candidate.encoded.bytes.size();
     report.error = candidate.report.error;
-    report.target_error = ErrorOf(*context, family);
+    report.target_error = ErrorOf(context, family);
     report.position_bits = candidate.report.position_bits;
     report.attributes = std::move(candidate.report.attributes);
     plan.targets = std::move(candidate.targets);
@@ -362,7 +352,7 @@ StatusOr<std::vector<PrimitivePlan>> PlanForErrors(const GltfDocument& document,
     const bool plain = options.fallback == Fallback::kPlain;
     if (is_stream && (refine_always || IsRate(options.encode.target) || plain)) continue;
     if (!plain) {
-      PlanFamily(f, &context, &plans);
+      PlanFamily(f, context, &plans);
       continue;
     }
     for (const size_t member : members) {

@@ -97,7 +97,7 @@ AttributePrecision FindAttributeBits(const Primitive& primitive, const Attribute
   return precision;
 }
 
-SharedLattice FindPositionLattice(const TriangleMesh& surface, double error) {
+SharedLattice FindPositionLattice(const TriangleMesh& surface, double error, int least_bits) {
   constexpr uint64_t kSamples = 100'000;
   constexpr double kMostFlipped = 5e-4;
   Vec3f min = surface.positions.empty() ? Vec3f{} : surface.positions[0];
@@ -142,7 +142,7 @@ SharedLattice FindPositionLattice(const TriangleMesh& surface, double error) {
   };
   const Vec3f extent = max - min;
   const int start = StartBits(std::max({extent.x, extent.y, extent.z}), 1, error);
-  return at(FewestBits(start, 2, kMostLatticeBits, 1.0, excess));
+  return at(FewestBits(start, least_bits, kMostLatticeBits, 1.0, excess));
 }
 
 }  // namespace lacerta

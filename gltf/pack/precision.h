@@ -30,9 +30,10 @@ struct SharedLattice {
   double flipped = 0.0;   // share of their area that looks to the other side
 };
 
-// The coarsest lattice over `surface` (all that touches, in one mesh) that keeps d_S at or below `error` and no more
-// than one part in two thousand of the area flipped; the finest that floats can use where none does.
-SharedLattice FindPositionLattice(const TriangleMesh& surface, double error);
+// The coarsest lattice of `least_bits` (2..kMostLatticeBits) or more over `surface` (all that touches, in one mesh) that
+// keeps d_S at or below `error` and no more than one part in two thousand of the area flipped; the finest that floats
+// can use where none does.
+SharedLattice FindPositionLattice(const TriangleMesh& surface, double error, int least_bits = 2);
 
 }  // namespace lacerta
 

@@ -9,61 +9,12 @@
 #include <utility>
 
 #include "document/lattice.h"
+#include "pack/attributed_family.h"
 #include "pack/precision.h"
 #include "remesh/simplify_to_errors.h"
 
 namespace lacerta {
 namespace {
-
-bool BeginsWith(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
-
-std::optional<AttributeKind> KindOf(const Attribute& attribute) {
-  const std::string& name = attribute.name;
-  if (BeginsWith(name, "TEXCOORD_") && attribute.data.components == 2) return AttributeKind::kTextureCoordinates;
-  if (BeginsWith(name, "COLOR_")) return AttributeKind::kColor;
-  if (name == "NORMAL" && attribute.data.components == 3) return AttributeKind::kNormal;
-  if (name == "TANGENT" && attribute.data.components == 4) return AttributeKind::kTangent;
-  return std::nullopt;
-}
-
-// Texels per unit of a member's texture coordinates.
-using TexelScale = std::function<double(size_t member, uint64_t set)>;
-
-uint64_t SetOf(const std::string& name) { return std::strtoull(name.c_str() + std::strlen("TEXCOORD_"), nullptr, 10); }
-
-// Texture coordinates of unlike scales are attributes of their own, each with its own target.
-std::string SoupName(const Attribute& attribute, size_t member, const TexelScale& scale) {
-  if (!BeginsWith(attribute.name, "TEXCOORD_")) return attribute.name;
-  return attribute.name + "/" + std::to_string(scale(member, SetOf(attribute.name)));
-}
-
-StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const TexelScale& scale) {
-  VertexSoup soup;
-  TriangleMesh surface = Surface(primitive);
-  soup.positions = std::move(surface.positions);
-  soup.triangles = std::move(surface.triangles);
-  for (const Attribute& attribute : primitive.attributes) {
-    if (attribute.name == "POSITION") continue;
-    const std::optional<AttributeKind> kind = KindOf(attribute);
-    if (!kind.has_value()) return Unsupported("has the attribute " + attribute.name + ", which is not simplified");
-    VertexSoup::Attribute values{SoupName(attribute, member, scale), *kind, attribute.data.components, {}};
-    values.values.reserve(static_cast<size_t>(primitive.num_vertices) * values.components);
-    for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
-      for (uint32_t c = 0; c < values.components; ++c) values.values.push_back(attribute.data.Float(v, c));
-    }
-    soup.attributes.push_back(std::move(values));
-  }
-  return soup;
-}
-
-StatusOr<AttributedMesh> ToMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale) {
-  std::vector<VertexSoup> soups;
-  for (size_t m = 0; m < primitives.size(); ++m) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale));
-    soups.push_back(std::move(soup));
-  }
-  return WeldSoups(soups);
-}
 
 AccessorData FloatData(const std::vector<float>& values, uint32_t components) {
   AccessorData data;
@@ -159,6 +110,8 @@ class FamilySimplifier {
     ErrorTargets targets = error_targets_;
     targets.distance *= share;
     for (double& target : targets.attributes) target *= share;
+    for (double& target : targets.everywhere) target *= share;
+    targets.turned *= share;
     LACERTA_ASSIGN_OR_RETURN(const SimplifiedSurface simplified, SimplifyToErrors(original_, meter_, targets));
     if (!simplified.meets_targets) return Unsupported("no simplified surface is close enough");
     LACERTA_ASSIGN_OR_RETURN(const std::vector<Primitive> primitives, Split(simplified.mesh));
@@ -219,7 +172,7 @@ class FamilySimplifier {
     constexpr uint64_t kSamples = 100'000;
     std::vector<const Primitive*> decoded;
     for (const DracoEncoded& member : family->members) decoded.push_back(&member.decoded);
-    LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, ToMesh(decoded, texels_per_unit_));
+    LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, ToAttributedMesh(decoded, texels_per_unit_));
     LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, meter_.Measure(mesh, kSamples));
     const bool met = WorstRatio(errors, error_targets_) <= 1.0;
     std::map<double*, double> ratios;  // the worst for each share
@@ -227,6 +180,9 @@ class FamilySimplifier {
     for (size_t a = 0; a < original_.attributes.size(); ++a) {
       double& ratio = ratios[ShareOf(original_.attributes[a], rest)];
       ratio = std::max(ratio, errors.attributes[a].rms_99 / error_targets_.attributes[a]);
+      if (!error_targets_.everywhere.empty()) {
+        ratio = std::max(ratio, errors.attributes[a].rms / error_targets_.everywhere[a]);
+      }
     }
     constexpr double kFarWithin = 0.85;
     for (const auto& [share, ratio] : ratios) {
@@ -239,15 +195,8 @@ class FamilySimplifier {
     family->error = errors.distance;
     for (size_t m = 0; m < family->reports.size(); ++m) {
       for (AttributeReport& report : family->reports[m]) {
-        for (size_t a = 0; a < original_.attributes.size(); ++a) {
-          const MeshAttribute& attribute = original_.attributes[a];
-          const Attribute* own = primitives_[m]->Find(report.name);
-          if (own == nullptr || attribute.name != SoupName(*own, m, texels_per_unit_)) continue;
-          report.error = errors.attributes[a].rms_99;
-          if (attribute.kind == AttributeKind::kTextureCoordinates) {
-            report.error *= targets_.uv_texels / error_targets_.attributes[a];  // of the scale that the target is in
-          }
-        }
+        const std::optional<size_t> a = AttributeOf(original_, *primitives_[m], report.name, m, texels_per_unit_);
+        if (a.has_value()) report.error = ReportedError(original_, errors, error_targets_, targets_, *a);
       }
     }
     return met;
@@ -265,22 +214,12 @@ class FamilySimplifier {
 
 StatusOr<SimplifiedFamily> SimplifyFamily(const std::vector<const Primitive*>& primitives, double error,
                                           const AttributeTargets& targets, uint64_t texel_side,
-                                          const TexelScale& texels_per_unit) {
-  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original, ToMesh(primitives, texels_per_unit));
+                                          const TexelScale& texels_per_unit, const std::vector<double>& everywhere) {
+  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original, ToAttributedMesh(primitives, texels_per_unit));
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter,
                            SurfaceErrorMeter::Create(original, static_cast<double>(texel_side)));
-  ErrorTargets error_targets;
-  error_targets.distance = error;
-  for (const MeshAttribute& attribute : original.attributes) {
-    if (attribute.kind == AttributeKind::kTextureCoordinates) {
-      const double scale = std::strtod(attribute.name.c_str() + attribute.name.find('/') + 1, nullptr);
-      error_targets.attributes.push_back(targets.uv_texels * static_cast<double>(texel_side) / scale);
-    } else if (attribute.kind == AttributeKind::kColor) {
-      error_targets.attributes.push_back(targets.color * 2.0);  // integers come back rounded
-    } else {
-      error_targets.attributes.push_back(targets.normal_degrees);
-    }
-  }
+  ErrorTargets error_targets = FamilyTargets(original, error, targets, texel_side);
+  error_targets.everywhere = everywhere;
   const FamilySimplifier simplifier(primitives, original, meter, error_targets, targets, texels_per_unit);
   constexpr double kShare = 0.85;  // to simplification: what rounding adds comes on top in squares
   return simplifier.Run(kShare);

@@ -196,8 +196,9 @@ Status Report(const std::vector<std::string>& files, const Errors& wanted) {
     } else {
       if (blurred) bits[1] = std::min(bits[1] + 1, kMostBits);
       if (tilted) bits[2] = std::min(bits[2] + 1, kMostBits);
-      // More bits of texture coordinates do not help where positions slide.
+      // More bits of texture coordinates and normals do not help where positions slide.
       if (blurred && bits[1] > 12 && bits[0] < kMostBits) ++bits[0], bits[1] = 10;
+      if (tilted && bits[2] > 10 && bits[0] < kMostBits) ++bits[0], bits[2] = 6;
     }
     if (bits == last) break;
   }

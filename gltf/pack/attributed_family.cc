@@ -1,0 +1,102 @@
+#include "pack/attributed_family.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+namespace lacerta {
+namespace {
+
+constexpr double kMostTurned = 5e-4;
+
+bool BeginsWith(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
+
+std::optional<AttributeKind> KindOf(const Attribute& attribute) {
+  const std::string& name = attribute.name;
+  if (BeginsWith(name, "TEXCOORD_") && attribute.data.components == 2) return AttributeKind::kTextureCoordinates;
+  if (BeginsWith(name, "COLOR_")) return AttributeKind::kColor;
+  if (name == "NORMAL" && attribute.data.components == 3) return AttributeKind::kNormal;
+  if (name == "TANGENT" && attribute.data.components == 4) return AttributeKind::kTangent;
+  return std::nullopt;
+}
+
+uint64_t SetOf(const std::string& name) { return std::strtoull(name.c_str() + std::strlen("TEXCOORD_"), nullptr, 10); }
+
+StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const TexelScale& scale,
+                            OtherAttributes others) {
+  VertexSoup soup;
+  TriangleMesh surface = Surface(primitive);
+  soup.positions = std::move(surface.positions);
+  soup.triangles = std::move(surface.triangles);
+  for (const Attribute& attribute : primitive.attributes) {
+    if (attribute.name == "POSITION") continue;
+    const std::optional<AttributeKind> kind = KindOf(attribute);
+    if (!kind.has_value() && others == OtherAttributes::kLeaveOut) continue;
+    if (!kind.has_value()) return Unsupported("has the attribute " + attribute.name + ", which is not simplified");
+    VertexSoup::Attribute values{SoupName(attribute, member, scale), *kind, attribute.data.components, {}};
+    values.values.reserve(static_cast<size_t>(primitive.num_vertices) * values.components);
+    for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
+      for (uint32_t c = 0; c < values.components; ++c) values.values.push_back(attribute.data.Float(v, c));
+    }
+    soup.attributes.push_back(std::move(values));
+  }
+  return soup;
+}
+
+double ScaleOf(const MeshAttribute& texture) {
+  return std::strtod(texture.name.c_str() + texture.name.find('/') + 1, nullptr);
+}
+
+}  // namespace
+
+std::string SoupName(const Attribute& attribute, size_t member, const TexelScale& scale) {
+  if (!BeginsWith(attribute.name, "TEXCOORD_")) return attribute.name;
+  return attribute.name + "/" + std::to_string(scale(member, SetOf(attribute.name)));
+}
+
+StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
+                                          OtherAttributes others) {
+  std::vector<VertexSoup> soups;
+  for (size_t m = 0; m < primitives.size(); ++m) {
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale, others));
+    soups.push_back(std::move(soup));
+  }
+  return WeldSoups(soups);
+}
+
+ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const AttributeTargets& targets,
+                           uint64_t texel_side) {
+  ErrorTargets result;
+  result.distance = error;
+  result.turned = kMostTurned;
+  for (const MeshAttribute& attribute : original.attributes) {
+    if (attribute.kind == AttributeKind::kTextureCoordinates) {
+      result.attributes.push_back(targets.uv_texels * static_cast<double>(texel_side) / ScaleOf(attribute));
+    } else if (attribute.kind == AttributeKind::kColor) {
+      result.attributes.push_back(targets.color * 2.0);  // integers come back rounded
+    } else {
+      result.attributes.push_back(targets.normal_degrees);
+    }
+  }
+  return result;
+}
+
+std::optional<size_t> AttributeOf(const AttributedMesh& mesh, const Primitive& primitive, const std::string& name,
+                                  size_t member, const TexelScale& scale) {
+  const Attribute* own = primitive.Find(name);
+  if (own == nullptr) return std::nullopt;
+  const std::string wanted = SoupName(*own, member, scale);
+  for (size_t a = 0; a < mesh.attributes.size(); ++a) {
+    if (mesh.attributes[a].name == wanted && mesh.attributes[a].components == own->data.components) return a;
+  }
+  return std::nullopt;
+}
+
+double ReportedError(const AttributedMesh& original, const SurfaceErrors& errors, const ErrorTargets& error_targets,
+                     const AttributeTargets& targets, size_t attribute) {
+  const double error = errors.attributes[attribute].rms_99;
+  if (original.attributes[attribute].kind != AttributeKind::kTextureCoordinates) return error;
+  return error * targets.uv_texels / error_targets.attributes[attribute];  // of the scale that the target is in
+}
+
+}  // namespace lacerta

@@ -1,0 +1,48 @@
+// Primitives that touch as one surface with attributes, to be measured as a viewer shows them.
+#ifndef LACERTA_PACK_ATTRIBUTED_FAMILY_H_
+#define LACERTA_PACK_ATTRIBUTED_FAMILY_H_
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "document/primitive.h"
+#include "lacerta/attributed_mesh.h"
+#include "lacerta/gltf.h"
+#include "lacerta/status.h"
+#include "remesh/simplify_to_errors.h"
+
+namespace lacerta {
+
+// Texels per unit of a member's texture coordinates.
+using TexelScale = std::function<double(size_t member, uint64_t set)>;
+
+// The name of an attribute in the surface: texture coordinates of unlike scales are attributes of their own, each with
+// its own target.
+std::string SoupName(const Attribute& attribute, size_t member, const TexelScale& scale);
+
+// What becomes of attributes that have no meaning between vertices (joints, application attributes).
+enum class OtherAttributes { kRefuse, kLeaveOut };
+
+// Primitive m becomes group m. Fails with kUnsupported on attributes to refuse, and like WeldSoups.
+StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
+                                          OtherAttributes others = OtherAttributes::kRefuse);
+
+// The targets in the units of SurfaceErrorMeter with textures of `texel_side`; `error` in mesh units. No more than one
+// part in two thousand of the area may look away from the original.
+ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const AttributeTargets& targets,
+                           uint64_t texel_side);
+
+// Which attribute of the surface a primitive's is; empty where it was left out.
+std::optional<size_t> AttributeOf(const AttributedMesh& mesh, const Primitive& primitive, const std::string& name,
+                                  size_t member, const TexelScale& scale);
+
+// The error of an attribute in the unit of `targets`, of which `error_targets` were made.
+double ReportedError(const AttributedMesh& original, const SurfaceErrors& errors, const ErrorTargets& error_targets,
+                     const AttributeTargets& targets, size_t attribute);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_PACK_ATTRIBUTED_FAMILY_H_
