@@ -117,7 +117,7 @@ class FamilySimplifier {
     LACERTA_ASSIGN_OR_RETURN(const std::vector<Primitive> primitives, Split(simplified.mesh));
     Rest rest;
     rest.distance = RestOf(simplified.errors.distance, error_targets_.distance);
-    rest.attributes = {1.0, 1.0, 1.0, 1.0};
+    rest.attributes = {1.0, 1.0, 1.0, 1.0, false};
     for (size_t a = 0; a < original_.attributes.size(); ++a) {
       double* own = ShareOf(original_.attributes[a], &rest);
       *own = std::min(*own, RestOf(simplified.errors.attributes[a].rms_99, error_targets_.attributes[a]));

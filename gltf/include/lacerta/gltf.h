@@ -31,12 +31,12 @@ struct AttributeTargets {
   double uv_texels = 1.0;
   // Of normals and tangents. Two degrees are below what a mesh at 70 dB shows of its own shape.
   double normal_degrees = 2.0;
-  // Simplified surfaces meet it over their whole area, too, or are as good as all vertices rounded are: the last
-  // hundredth, small parts and sharp rims, takes half as many bytes again.
-  bool normals_everywhere = false;
   // Of each component, as 8-bit integers do it, the coarsest that core glTF has: 1 / (255 sqrt(12)).
   double color = 0.00113;
   double weight = 0.00113;
+  // Simplified surfaces meet `normal_degrees` over their whole area, too, or are as good as all vertices rounded are: the last
+  // hundredth, small parts and sharp rims, takes half as many bytes again.
+  bool normals_everywhere = false;
 };
 
 struct PackOptions {

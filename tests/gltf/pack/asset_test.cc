@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -20,6 +22,12 @@ constexpr const char* kAssets[] = {
     "2CylinderEngine", "BoomBox",      "CesiumMan",   "CesiumMilkTruck",       "Corset",          "DamagedHelmet", "FlightHelmet",
     "Fox",             "GlamVelvetSofa", "GlassVaseFlowers", "MaterialsVariantsShoe", "MorphStressTest", "MosquitoInAmber",
     "SheenChair",      "SheenCloth",   "ToyCar",      "WaterBottle",           "pizza_uv",        "spot_textured"};
+
+// Those run where asked for, so that the suite stays quick.
+bool IsLarge(const std::string& asset) {
+  constexpr const char* kLarge[] = {"2CylinderEngine", "FlightHelmet", "SheenCloth", "ToyCar"};
+  return std::find(std::begin(kLarge), std::end(kLarge), asset) != std::end(kLarge);
+}
 
 // Edges of one triangle, after vertices at equal positions have become one and triangles with two equal corners are
 // gone.
@@ -93,6 +101,9 @@ class AssetTest : public ::testing::TestWithParam<const char*> {};
 TEST_P(AssetTest, KeepsEverythingElseAndOpensNoCrack) {
   const std::string path = std::string(LACERTA_TEST_DATA_DIR) + "/" + GetParam() + ".glb";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  if (IsLarge(GetParam()) && std::getenv("LACERTA_LARGE_ASSETS") == nullptr) {
+    GTEST_SKIP() << "takes half a minute or more: set LACERTA_LARGE_ASSETS=1";
+  }
   const Bytes asset = ReadFile(path).value();
   const auto packed = PackGltf(asset, {});
   ASSERT_TRUE(packed.ok()) << packed.status().message();

@@ -112,6 +112,32 @@ TEST(Pack, ReportsEveryPrimitive) {
   for (const PrimitiveReport& primitive : report) EXPECT_LT(primitive.bytes_after, primitive.bytes_before);
 }
 
+TEST(Pack, ABudgetIsTheWholeFilesAndTheLargerMeshGetsMore) {
+  AssetBuilder builder;
+  for (const uint32_t size : {60u, 20u}) {
+    const TriangleMesh ball = WavySphere(size, 2 * size, {3.0f * static_cast<float>(size), 0, 0});
+    Json primitive = builder.Primitive(ball);
+    primitive["attributes"]["COLOR_0"] = builder.AddFloats(std::vector<Vec3f>(ball.positions.size(), {0.5f, 0.25f, 1.0f}), false);
+    builder.AddMesh("ball", Json::array({primitive}));
+  }
+  const Bytes asset = builder.Glb();
+  uint64_t larger_before = 0;
+  for (const double budget : {4000.0, 8000.0}) {
+    PackOptions options;
+    options.encode.target = {EncodeTarget::Kind::kBytes, budget};
+    const auto packed = PackGltf(asset, options);
+    ASSERT_TRUE(packed.ok()) << packed.status().message();
+    const std::vector<PrimitiveReport>& primitives = packed.value().report.primitives;
+    ASSERT_EQ(primitives.size(), 2u);
+    const uint64_t bytes = primitives[0].bytes_after + primitives[1].bytes_after;
+    EXPECT_LE(static_cast<double>(bytes), budget);
+    EXPECT_GE(static_cast<double>(bytes), 0.95 * budget);
+    EXPECT_GT(primitives[0].bytes_after, primitives[1].bytes_after);
+    EXPECT_GT(primitives[0].bytes_after, larger_before);
+    larger_before = primitives[0].bytes_after;
+  }
+}
+
 TEST(Pack, EverythingElsePassesThrough) {
   const Bytes asset = MixedAsset();
   const Json before = JsonOf(asset);
