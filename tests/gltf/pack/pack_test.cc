@@ -131,7 +131,7 @@ TEST(Pack, ABudgetIsTheWholeFilesAndTheLargerMeshGetsMore) {
     ASSERT_EQ(primitives.size(), 2u);
     const uint64_t bytes = primitives[0].bytes_after + primitives[1].bytes_after;
     EXPECT_LE(static_cast<double>(bytes), budget);
-    EXPECT_GE(static_cast<double>(bytes), 0.95 * budget);
+    EXPECT_GE(static_cast<double>(bytes), 0.9 * budget) << "precision comes in whole bits";
     EXPECT_GT(primitives[0].bytes_after, primitives[1].bytes_after);
     EXPECT_GT(primitives[0].bytes_after, larger_before);
     larger_before = primitives[0].bytes_after;
