@@ -108,6 +108,13 @@ void DescendLevel(const SurfaceTarget& target, int level, const std::vector<Vec3
   CodeLevel(coarse, steps, state, &coded->levels[level - 1], &meter, choose);
 }
 
+// The finest level that has coefficients; 0 if none has.
+int LastActiveLevel(const std::vector<LevelSteps>& steps) {
+  size_t last = steps.size();
+  while (last > 0 && steps[last - 1].is_silent()) --last;
+  return static_cast<int>(last);
+}
+
 // One pass over all levels, coarse to fine. The gradient is computed once; what the coarser levels have moved since then comes to it
 // with the lumped masses.
 //   positions  Synthesize of `coded`, on entry and on return
@@ -116,8 +123,11 @@ void DescendOnce(const SurfaceTarget& target, const DescentOptions& options, Cod
   if (options.move_base) DescendBase(target, gradients[LevelAhead(target, 0)], &coded->base);
   const std::vector<Vec3f> before = std::exchange(*positions, LatticePoints(coded->base));
   CodingState state;
-  for (int level = 1; level <= target.num_levels(); ++level) {
+  const int last_active = LastActiveLevel(coded->steps);
+  for (int level = 1; level <= last_active; ++level) {
     const Topology& coarse = target.topologies[level - 1];
+    state.normal_continues = level < last_active && coded->steps[level].normal_step > 0;
+    state.tangential_continues = level < last_active && coded->steps[level].tangential_step > 0;
     const std::vector<Vec3f> predicted = PredictMidpoints(coarse, target.stencils, *positions);
     const int ahead = LevelAhead(target, level);
     std::vector<Vec3f> present = *positions;  // on the level ahead, with the coefficients so far
@@ -130,6 +140,7 @@ void DescendOnce(const SurfaceTarget& target, const DescentOptions& options, Cod
     DescendLevel(target, level, *positions, predicted, std::move(gradient), options, coded, &state);
     AppendMidpoints(coarse, predicted, coded->steps[level - 1], coded->levels[level - 1], positions);
   }
+  for (int level = last_active + 1; level <= target.num_levels(); ++level) AppendLevel(target, *coded, level, positions);
 }
 
 // Bits of the two sets of every level.

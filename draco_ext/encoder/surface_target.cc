@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "encoder/local_model.h"
+
 namespace lacerta {
 namespace {
 
@@ -97,9 +99,10 @@ SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
   }
   std::vector<uint32_t> next_twin = ChainTwins(mesh.mesh.tags.joined, topologies);
   topologies.back() = WithoutEdges(std::move(topologies.back()));
-  return {std::move(topologies), std::move(stencils), std::move(spreads), mesh.mesh.positions,
-          mesh.surface_normals,  std::move(masses),   mesh.piercing,      std::move(next_twin),
-          mesh.keeps_vertices};
+  SurfaceTarget target{std::move(topologies), std::move(stencils), std::move(spreads), mesh.mesh.positions, mesh.surface_normals,
+                       std::move(masses),     {},                  mesh.piercing,      std::move(next_twin), mesh.keeps_vertices};
+  for (int level = 0; level <= target.num_levels(); ++level) target.curvatures.push_back(Curvatures(target, level));
+  return target;
 }
 
 }  // namespace lacerta
