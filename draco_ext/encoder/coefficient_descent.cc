@@ -225,15 +225,14 @@ std::vector<Vec3f> Synthesize(const SurfaceTarget& target, const CodedSurface& c
 double PlaneDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& positions) {
   std::vector<double> distance(positions.size());
   for (size_t v = 0; v < positions.size(); ++v) distance[v] = Dot(positions[v] - target.points[v], target.normals[v]);
-  double sum = 0, area = 0;
-  for (const Triangle& t : target.topologies.back().triangles) {
-    const Vec3f& corner = target.points[t[0]];
-    const double doubled_area = Norm(Cross(target.points[t[1]] - corner, target.points[t[2]] - corner));
+  double sum = 0;
+  const std::vector<Triangle>& triangles = target.topologies.back().triangles;
+  for (size_t i = 0; i < triangles.size(); ++i) {
+    const Triangle& t = triangles[i];
     const double a = distance[t[0]], b = distance[t[1]], c = distance[t[2]];
-    sum += doubled_area * (a * a + b * b + c * c + a * b + b * c + c * a) / 6;
-    area += doubled_area;
+    sum += target.areas[i] * (a * a + b * b + c * c + a * b + b * c + c * a) / 6;
   }
-  return area > 0 ? sum / area : 0;
+  return sum;
 }
 
 double SurfaceDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& positions) {

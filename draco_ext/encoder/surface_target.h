@@ -51,6 +51,7 @@ struct SurfaceTarget {
   std::vector<StencilSpread> spreads;         // of levels 0 .. L-1
   std::vector<Vec3f> points;                  // #V of the finest level: points of the input
   std::vector<Vec3f> normals;                 // #V, unit
+  std::vector<float> areas;                   // of the triangles of the finest level, as shares of the whole; 0 where there is none
   // Per level 0 .. L: share of the area at each vertex; each sums to 1. Still triangles have no part in it.
   std::vector<std::vector<float>> masses;
   std::vector<std::vector<SymmetricMatrix>> curvatures;  // per level 0 .. L: #V, of Curvatures (encoder/local_model.h)
