@@ -45,7 +45,7 @@ GluedCorners GlueCorners(size_t num_triangles, Span<const uint32_t> twins, const
     return c;
   };
   const auto join = [&](uint32_t a, uint32_t b) {
-    const auto [first, second] = std::minmax(find(a), find(b));
+    const auto [first, second] = std::minmax({find(a), find(b)});
     parent[second] = first;  // halving paths keeps this O(n log n)
   };
   const auto next = [](uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; };

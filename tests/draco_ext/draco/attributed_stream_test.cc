@@ -120,7 +120,9 @@ TEST(AttributedStreamTest, SidesOfABoxStayAsTheyAre) {
     EXPECT_EQ(level.attributes[2].corners[f][0] == MeshAttribute::kNoValue, level.groups[f] == 1u);
     for (size_t k = 0; k < 3; ++k) {
       const float* const normal = &level.attributes[1].values[3 * level.attributes[1].corners[f][k]];
-      EXPECT_GT(Dot(flat, Vec3f{normal[0], normal[1], normal[2]}), 0.99f);
+      // Sides stay flat up to the error that positions may have; their normals along an axis stay exactly there.
+      EXPECT_GT(Dot(flat, Vec3f{normal[0], normal[1], normal[2]}), 0.95f);
+      EXPECT_GT(std::max({std::fabs(normal[0]), std::fabs(normal[1]), std::fabs(normal[2])}), 0.9999f);
     }
   }
 }
