@@ -105,7 +105,7 @@ TEST(AttributedStreamTest, ErrorsAreMetAndLittleIsLeftOfThem) {
 
 TEST(AttributedStreamTest, SidesOfABoxStayAsTheyAre) {
   const AttributedNormalMesh mesh = BoxOfTwoGroups(2);
-  const AttributedStream stream = EncodeAttributedStream(mesh, Options(1e-7, {1e-3, 1.0, 1e-3})).value();
+  const AttributedStream stream = EncodeAttributedStream(mesh, Options(1e-9, {1e-3, 1.0, 1e-3})).value();
   ASSERT_EQ(stream.bases.size(), 2u);
   const AttributedMesh level = AttributedMeshAtLevel(stream.decoded, 2).value();
   ASSERT_TRUE(CheckAttributedMesh(level).ok());
