@@ -6,7 +6,6 @@
 
 #include "geometry/equal_rows.h"
 #include "remesh/edge_corners.h"
-#include "remesh/manifold.h"
 
 namespace lacerta {
 namespace {
@@ -105,6 +104,8 @@ WedgeMesh MakeWedgeMesh(const AttributedMesh& input) {
   ManifoldMesh manifold = MakeManifold(cleaned);
   result.mesh = std::move(manifold.mesh);
   result.source_vertex = std::move(manifold.source_vertex);
+  result.component = std::move(manifold.component);
+  result.components = std::move(manifold.components);
   for (size_t f = 0; f < cleaned.triangles.size(); ++f) {
     result.flipped.push_back(result.source_vertex[result.mesh.triangles[f][1]] != cleaned.triangles[f][1]);
   }
