@@ -11,21 +11,6 @@
 namespace lacerta {
 namespace {
 
-// The chosen faces of the wedge mesh, whose triangles are `surface`, with groups and attribute values.
-AttributedMesh WithAttributes(const AttributedMesh& input, const WedgeMesh& wedges, TriangleMesh surface, const std::vector<uint32_t>& faces) {
-  AttributedMesh part;
-  part.surface = std::move(surface);
-  if (!input.groups.empty()) {
-    for (const uint32_t f : faces) part.groups.push_back(input.groups[wedges.source_face[f]]);
-  }
-  for (const MeshAttribute& attribute : input.attributes) {
-    MeshAttribute& out = part.attributes.emplace_back(attribute);
-    out.corners.clear();
-    for (const uint32_t f : faces) out.corners.push_back(attribute.corners[wedges.source_face[f]]);
-  }
-  return part;
-}
-
 // Whether the attribute goes on over an edge: its values are the same on both sides, at both ends.
 bool IsContinuous(const AttributedMesh& mesh, const Topology& topology, const MeshAttribute& attribute, uint32_t edge) {
   const auto& faces = topology.edge_faces[edge];
@@ -159,8 +144,8 @@ StatusOr<AttributedParts> SplitAttributedSurface(const AttributedMesh& mesh, con
   if (split.refined.triangles.empty()) return Unsupported(WhyStill(wedges, corners, options));
 
   AttributedParts parts;
-  parts.refined = WithAttributes(mesh, wedges, std::move(split.refined), split.refined_faces);
-  parts.still = WithAttributes(mesh, wedges, std::move(split.still), split.still_faces);
+  parts.refined = TakeFaces(mesh, wedges, std::move(split.refined), split.refined_faces);
+  parts.still = TakeFaces(mesh, wedges, std::move(split.still), split.still_faces);
   parts.topology = std::move(split.topology);
   parts.source_vertex = std::move(split.source_vertex);
   parts.shape_creases = std::move(split.shape_creases);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 #include "geometry/equal_rows.h"
@@ -112,6 +113,26 @@ WedgeMesh MakeWedgeMesh(const AttributedMesh& input) {
   for (const MeshAttribute& attribute : input.attributes) result.attributes.push_back(MakeNodes(attribute, result));
   FindCurves(input, &result);
   return result;
+}
+
+AttributedMesh TakeFaces(const AttributedMesh& input, const WedgeMesh& wedges, TriangleMesh surface, const std::vector<uint32_t>& faces) {
+  AttributedMesh part;
+  part.surface = std::move(surface);
+  if (!input.groups.empty()) {
+    for (const uint32_t f : faces) part.groups.push_back(input.groups[wedges.source_face[f]]);
+  }
+  for (const MeshAttribute& attribute : input.attributes) {
+    MeshAttribute& out = part.attributes.emplace_back(attribute);
+    out.corners.clear();
+    for (const uint32_t f : faces) out.corners.push_back(attribute.corners[wedges.source_face[f]]);
+  }
+  return part;
+}
+
+AttributedMesh TakeFaces(const AttributedMesh& input, const WedgeMesh& wedges) {
+  std::vector<uint32_t> faces(wedges.source_face.size());
+  std::iota(faces.begin(), faces.end(), 0u);
+  return TakeFaces(input, wedges, wedges.mesh, faces);
 }
 
 }  // namespace lacerta

@@ -43,6 +43,12 @@ struct WedgeMesh {
 // vertices and orientation all but the first. O(n log n).
 WedgeMesh MakeWedgeMesh(const AttributedMesh& input);
 
+// A part of the wedge mesh of `input` with groups and attribute values: `surface`, whose triangles are the given ones of the wedge mesh.
+// No face may be flipped.
+AttributedMesh TakeFaces(const AttributedMesh& input, const WedgeMesh& wedges, TriangleMesh surface, const std::vector<uint32_t>& faces);
+// All of it.
+AttributedMesh TakeFaces(const AttributedMesh& input, const WedgeMesh& wedges);
+
 }  // namespace lacerta
 
 #endif  // LACERTA_REMESH_WEDGE_MESH_H_
