@@ -30,7 +30,7 @@ struct AttributedPartsOptions {
   uint32_t fewest_faces = 500;  // of a component that is worth remeshing
   // Corners per face beyond which a component stands still: every corner is a vertex of the base, which has twice as many faces, and
   // there have to be two levels above it.
-  double most_corners = 1.0 / 32;
+  double most_corners = 1.0 / 16;
 };
 
 // mesh: one that CheckAttributedMesh accepts. kUnsupported where no component is worth remeshing, with the reason (too many seams, too few

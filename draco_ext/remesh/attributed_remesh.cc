@@ -18,7 +18,7 @@
 namespace lacerta {
 namespace {
 
-constexpr size_t kFewestFacesPerBaseFace = 16;
+constexpr size_t kFewestFacesPerBaseFace = 8;
 
 // For each base vertex the first one at the same position, where the surface was cut; empty where it nowhere was.
 std::vector<uint32_t> JoinedVertices(const std::vector<Vec3f>& positions) {

@@ -16,8 +16,8 @@
 
 namespace lacerta {
 
-// parts.refined simplified with its seams kept in place. kUnsupported where seams leave a base of more than a sixteenth of the triangles:
-// two levels above it would have as many as the input.
+// parts.refined simplified with its seams kept in place. kUnsupported where seams leave a base of more than an eighth of the triangles:
+// two levels above it would have twice as many as the input.
 StatusOr<CollapseHistory> DecimateAttributed(const AttributedParts& parts);
 
 // The order in which a coder of base meshes wants vertices and triangles.

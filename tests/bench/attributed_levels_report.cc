@@ -1,5 +1,6 @@
 // Remeshes the surfaces of glTF files with their attributes and prints what the finest level is, before anything is quantized, as one line of
-// JSON for each mesh: attributed_levels_report [--base VERTICES] [--levels N] [--psnr DB] [--obj PREFIX] FILE...
+// JSON for each mesh: attributed_levels_report [--base VERTICES] [--levels N] [--psnr DB] [--bare] [--obj PREFIX] FILE...
+// --psnr: prints the bytes of the positions at that PSNR, too. --bare: without attributes and groups, to see what their seams cost.
 // --levels 0: as many as bring the finest level to the input's number of triangles. --obj: writes both to PREFIX<mesh>.obj, for pictures.
 #include <algorithm>
 #include <chrono>
@@ -28,6 +29,7 @@ struct Wanted {
   uint32_t base = 0;
   int levels = 0;
   double psnr = 0;
+  bool is_bare = false;
   std::string obj;
 };
 
@@ -141,6 +143,8 @@ int main(int argc, char** argv) {
       wanted.levels = std::atoi(argv[++i]);
     } else if (argument == "--psnr" && i + 1 < argc) {
       wanted.psnr = std::atof(argv[++i]);
+    } else if (argument == "--bare") {
+      wanted.is_bare = true;
     } else if (argument == "--obj" && i + 1 < argc) {
       wanted.obj = argv[++i];
     } else {
@@ -148,7 +152,10 @@ int main(int argc, char** argv) {
       lacerta::Status status = surfaces.status();
       for (size_t s = 0; surfaces.ok() && s < surfaces.value().size(); ++s) {
         auto surface = surfaces.value()[s];
-        if (std::getenv("BARE")) surface.mesh.attributes.clear(), surface.mesh.groups.clear();
+        if (wanted.is_bare) {
+          surface.mesh.attributes.clear();
+          surface.mesh.groups.clear();
+        }
         const lacerta::Status report = lacerta::Report(surface, wanted);
         if (!report.ok()) std::fprintf(stderr, "%s\n", report.WithContext(surfaces.value()[s].name).message().c_str());
       }
