@@ -22,19 +22,19 @@ enum class AttributePrediction : uint8_t {
 };
 
 struct AttributeHeader {
-  AttributePrecision precision;
+  AttributeLattice precision;
   AttributePrediction prediction = AttributePrediction::kButterfly;
   std::vector<float> steps;  // L, as RoundStep returns them; 0: the level has no residuals
 };
 
 // Residuals that are coded for each value: normals move in their tangent plane, the sign of a tangent stays.
-inline uint32_t CodedComponents(const AttributePrecision& p) {
+inline uint32_t CodedComponents(const AttributeLattice& p) {
   if (p.kind == AttributeKind::kNormal) return 2;
   return p.kind == AttributeKind::kTangent ? 3 : p.components;
 }
 
 // Whether kind and number of components go together.
-inline bool HasLegalComponents(const AttributePrecision& p) {
+inline bool HasLegalComponents(const AttributeLattice& p) {
   if (p.kind == AttributeKind::kNormal) return p.components == 3;
   if (p.kind == AttributeKind::kTangent) return p.components == 3 || p.components == 4;
   return p.components >= 1;

@@ -14,7 +14,7 @@ namespace lacerta {
 namespace {
 
 Status CheckAttribute(const BaseAttribute& a, size_t num_vertices, size_t num_groups) {
-  const AttributePrecision& p = a.precision;
+  const AttributeLattice& p = a.precision;
   const bool is_normal = p.kind == AttributeKind::kNormal;
   if (!HasLegalComponents(p)) return InvalidData(std::to_string(p.components) + " components are not legal");
   if (is_normal ? p.octahedral_bits < kLeastOctahedralBits || p.octahedral_bits > kMostOctahedralBits : !(p.step > 0) || p.octahedral_bits != 0)
@@ -36,7 +36,7 @@ StatusOr<std::vector<uint32_t>> GroupsOfTriangles(const AttributedBase& base) {
 }
 
 // The row of floats that integers stand for.
-void AppendValue(const AttributePrecision& p, const int32_t* numbers, std::vector<float>* values) {
+void AppendValue(const AttributeLattice& p, const int32_t* numbers, std::vector<float>* values) {
   if (p.kind != AttributeKind::kNormal) {
     for (uint32_t c = 0; c < p.components; ++c) values->push_back(static_cast<float>(numbers[c]) * p.step);
     return;

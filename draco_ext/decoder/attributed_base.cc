@@ -14,14 +14,14 @@
 namespace lacerta {
 namespace {
 
-const VertexSoup::Attribute* Find(const VertexSoup& soup, const AttributePrecision& p) {
+const VertexSoup::Attribute* Find(const VertexSoup& soup, const AttributeLattice& p) {
   for (const VertexSoup::Attribute& a : soup.attributes) {
     if (a.name == p.name && a.components == p.components) return &a;
   }
   return nullptr;
 }
 
-Status AppendIntegers(const AttributePrecision& p, const VertexSoup& soup, const VertexSoup::Attribute& from, std::vector<int32_t>* values) {
+Status AppendIntegers(const AttributeLattice& p, const VertexSoup& soup, const VertexSoup::Attribute& from, std::vector<int32_t>* values) {
   if (from.values.size() != soup.positions.size() * p.components) return InvalidData("attribute " + p.name + " has not one value per vertex");
   for (size_t i = 0; i < from.values.size(); i += p.components) {
     const float* const row = &from.values[i];
@@ -57,10 +57,10 @@ StatusOr<std::vector<Triangle>> CornersAtLevel(const LevelAttribute& a, const Ba
 }  // namespace
 
 StatusOr<AttributedBase> AttributedBaseFromSoups(const std::vector<VertexSoup>& groups, float step,
-                                                 const std::vector<AttributePrecision>& precision) {
+                                                 const std::vector<AttributeLattice>& precision) {
   TriangleMesh mesh;
   AttributedBase base;
-  for (const AttributePrecision& p : precision) base.attributes.push_back({p, {}, {}});
+  for (const AttributeLattice& p : precision) base.attributes.push_back({p, {}, {}});
   for (const VertexSoup& soup : groups) {
     const auto first = static_cast<uint32_t>(mesh.positions.size());
     mesh.positions.insert(mesh.positions.end(), soup.positions.begin(), soup.positions.end());

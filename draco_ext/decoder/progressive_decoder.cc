@@ -47,9 +47,9 @@ Status CheckHeaderFitsBase(const RefinementHeader& header, const BaseMesh& base,
 }
 
 // A base that decodes as a different attribute would is not noticed by its checksum.
-Status CheckAttributesFit(const RefinementHeader& header, const std::vector<AttributePrecision>& given) {
-  const auto same = [](const AttributeHeader& a, const AttributePrecision& b) {
-    const AttributePrecision& p = a.precision;
+Status CheckAttributesFit(const RefinementHeader& header, const std::vector<AttributeLattice>& given) {
+  const auto same = [](const AttributeHeader& a, const AttributeLattice& b) {
+    const AttributeLattice& p = a.precision;
     return p.kind == b.kind && p.components == b.components && p.step == b.step && p.octahedral_bits == b.octahedral_bits;
   };
   if (std::equal(header.attributes.begin(), header.attributes.end(), given.begin(), given.end(), same)) return Status();
@@ -81,7 +81,7 @@ struct ProgressiveDecoder::State {
   BaseMesh base;
   uint16_t base_checksum = 0;
   bool is_attributed = false;              // the base was an AttributedBase
-  std::vector<AttributePrecision> precision;  // of its attributes
+  std::vector<AttributeLattice> precision;  // of its attributes
   std::vector<uint32_t> base_groups;       // #F0 then
   std::vector<LevelAttribute> attributes;
   RefinementOptions options;

@@ -58,7 +58,7 @@ Status WriteGrid(const MarkedLattice& lattice, Bytes* stream) {
   return Status();
 }
 
-draco::GeometryAttribute::Type DracoType(const AttributePrecision& p) {
+draco::GeometryAttribute::Type DracoType(const AttributeLattice& p) {
   switch (p.kind) {
     case AttributeKind::kNormal:
       return draco::GeometryAttribute::NORMAL;
@@ -200,7 +200,7 @@ class GroupEncoder {
   std::vector<std::pair<int, int>> octahedral_;  // Draco attribute, bits
 };
 
-StatusOr<VertexSoup::Attribute> ReadAttribute(const draco::Mesh& mesh, const draco::PointAttribute& from, const AttributePrecision& precision) {
+StatusOr<VertexSoup::Attribute> ReadAttribute(const draco::Mesh& mesh, const draco::PointAttribute& from, const AttributeLattice& precision) {
   const uint32_t n = precision.components;
   if (from.num_components() != static_cast<int>(n) || from.data_type() != draco::DT_FLOAT32 || from.byte_stride() < static_cast<int64_t>(n * sizeof(float)))
     return InvalidData("attribute " + precision.name + " of the base is not of " + std::to_string(n) + " floats");
@@ -262,7 +262,7 @@ StatusOr<std::vector<FaceSource>> MatchFaces(const AttributedBase& given, const 
 
 StatusOr<CodedAttributedBase> EncodeAttributedBase(const AttributedBase& base) {
   CodedAttributedBase result;
-  std::vector<AttributePrecision> precision;
+  std::vector<AttributeLattice> precision;
   for (const BaseAttribute& a : base.attributes) precision.push_back(a.precision);
   std::vector<VertexSoup> soups;
   const std::vector<Group> groups = SplitGroups(base);
@@ -281,7 +281,7 @@ StatusOr<CodedAttributedBase> EncodeAttributedBase(const AttributedBase& base) {
   return result;
 }
 
-StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributePrecision>& precision, const DecodeLimits& limits) {
+StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributeLattice>& precision, const DecodeLimits& limits) {
   LACERTA_ASSIGN_OR_RETURN(const StockMesh stock, DecodeStockStream(stream, limits));
   LACERTA_ASSIGN_OR_RETURN(TriangleMesh mesh, FromDracoMesh(*stock.mesh));
   VertexSoup soup{std::move(mesh.positions), std::move(mesh.triangles), {}};

@@ -25,7 +25,7 @@ StatusOr<CodedAttributedBase> EncodeAttributedBase(const AttributedBase& base);
 
 // The soup in the stock Draco mesh stream at the front of `stream`, with those of the attributes, in the order of the refinement header,
 // that are in it. Safe on untrusted bytes as DecodeStockStream is.
-StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributePrecision>& precision, const DecodeLimits& limits);
+StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributeLattice>& precision, const DecodeLimits& limits);
 
 }  // namespace lacerta
 

@@ -27,8 +27,8 @@ namespace {
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
 // Of the base, for an error over the surface: base values are few, and what they are off spreads over many finer ones.
-AttributePrecision PrecisionFor(const LevelAttribute& a, double error) {
-  AttributePrecision p{a.name, a.kind, a.components, 0.0f, 0};
+AttributeLattice PrecisionFor(const LevelAttribute& a, double error) {
+  AttributeLattice p{a.name, a.kind, a.components, 0.0f, 0};
   if (a.kind == AttributeKind::kNormal) {
     constexpr double kDegreesOfOneBit = 92.0;
     p.octahedral_bits = std::clamp(static_cast<int>(std::ceil(std::log2(kDegreesOfOneBit / error))), 4, 12);
@@ -65,7 +65,7 @@ Status CheckShapes(const AttributedNormalMesh& mesh, const AttributedStreamOptio
   return Status();
 }
 
-void AppendIntegers(const AttributePrecision& p, const float* row, std::vector<int32_t>* values) {
+void AppendIntegers(const AttributeLattice& p, const float* row, std::vector<int32_t>* values) {
   if (p.octahedral_bits > 0) {
     const auto point = OctahedralFromNormal({row[0], row[1], row[2]}, p.octahedral_bits);
     values->insert(values->end(), point.begin(), point.end());
@@ -237,7 +237,7 @@ StatusOr<AttributedStream> EncodeAttributedStream(const AttributedNormalMesh& me
                              MakeAttributeTarget(coded_base.base.attributes[a].precision, corners, glued.attributes[a].values, reordered.values[a],
                                                  topologies, stream.decoded.surface.positions));
     CodedAttribute best = EncodeAttribute(attribute, options.errors[a], topologies, stream.decoded.surface.positions);
-    stream.errors.push_back(AttributeError(attribute, best.decoded));
+    stream.errors.push_back(AttributeRmsError(attribute, best.decoded));
     stream.residual_bytes.push_back(static_cast<size_t>(AttributeBits(attribute, best) / 8));
     stream.decoded.attributes[a].values = best.decoded;
     LACERTA_ASSIGN_OR_RETURN(AttributeWedges wedges, MakeAttributeWedges(corners, glued.attributes[a].num_base_values));

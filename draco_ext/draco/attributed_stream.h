@@ -11,17 +11,12 @@
 #include "lacerta/mesh.h"
 #include "lacerta/remesh.h"
 #include "lacerta/status.h"
+#include "remesh/attributed_remesh.h"
 
 namespace lacerta {
 
-// What is to be coded. NormalMesh tells how vertices were found; AsNormalMesh makes one of a surface that stands for itself.
-struct AttributedNormalMesh {
-  NormalMesh surface;
-  std::vector<uint32_t> base_groups;       // #F0, each group with one triangle at least; empty: all 0
-  std::vector<LevelAttribute> attributes;  // of the surface; no two of the same name
-};
-
-// normals: of the finest level, weighted by area; vertices are kept, as nothing tells where else the surface is.
+// A surface that stands for itself, to be coded: normals are those of its finest level, weighted by area; no vertex counts as found by piercing, so that
+// none may slide.
 StatusOr<NormalMesh> AsNormalMesh(SemiRegularMesh surface);
 
 struct AttributedStreamOptions {
@@ -45,7 +40,7 @@ struct AttributedStream {
   size_t size() const;
 };
 
-// Fails with kInvalidArgument where arrays have not the shapes that the types tell, and with kInvalidData where the base cannot be coded
+// mesh: of any order; each of its groups has one triangle at least. Fails with kInvalidArgument where arrays have not the shapes that the types tell, and with kInvalidData where the base cannot be coded
 // or its triangles, hung together where they touch (AttributedBase), are no manifold.
 StatusOr<AttributedStream> EncodeAttributedStream(const AttributedNormalMesh& mesh, const AttributedStreamOptions& options);
 

@@ -21,7 +21,7 @@ Vec3f VectorAt(const std::vector<float>& rows, size_t i, uint32_t components) {
 }
 
 // Residuals of one midpoint, in attribute units or, of normals, as tangents of angles.
-void Difference(const AttributePrecision& p, const AttributeWedges& wedges, const SurfaceLevel& surface, uint32_t edge,
+void Difference(const AttributeLattice& p, const AttributeWedges& wedges, const SurfaceLevel& surface, uint32_t edge,
                 const std::vector<float>& predicted, const std::vector<float>& wanted, std::vector<float>* difference) {
   const size_t row = size_t{wedges.topology.num_vertices} + edge;
   if (p.kind == AttributeKind::kNormal) {
@@ -46,7 +46,7 @@ std::vector<float> StepsOf(float finest, int count, size_t num_levels) {
 
 }  // namespace
 
-StatusOr<AttributeTarget> MakeAttributeTarget(const AttributePrecision& precision, const std::vector<Triangle>& split_corners,
+StatusOr<AttributeTarget> MakeAttributeTarget(const AttributeLattice& precision, const std::vector<Triangle>& split_corners,
                                               std::vector<float> base_values, std::vector<float> values,
                                               Span<const Topology> topologies, Span<const Vec3f> positions) {
   AttributeTarget target{precision, {}, std::move(base_values), std::move(values), {}};
@@ -92,7 +92,7 @@ CodedAttribute QuantizeAttribute(const AttributeTarget& target, const AttributeH
   return coded;
 }
 
-double AttributeError(const AttributeTarget& target, const std::vector<float>& decoded) {
+double AttributeRmsError(const AttributeTarget& target, const std::vector<float>& decoded) {
   const uint32_t n = target.precision.components;
   const bool is_direction = target.precision.kind == AttributeKind::kNormal || target.precision.kind == AttributeKind::kTangent;
   double sum = 0;
@@ -144,7 +144,7 @@ CodedAttribute EncodeAttribute(const AttributeTarget& target, double largest_err
         const double step = 8 * unit * std::pow(2.0, -i / 2.0);
         CodedAttribute coded =
             QuantizeAttribute(target, {target.precision, prediction, StepsOf(static_cast<float>(step), count, topologies.size())}, topologies, positions);
-        const double error = AttributeError(target, coded.decoded);
+        const double error = AttributeRmsError(target, coded.decoded);
         if (error < least_error) {
           least_error = error;
           finest = coded;

@@ -15,7 +15,7 @@ namespace lacerta {
 
 // What does not change while steps are tried.
 struct AttributeTarget {
-  AttributePrecision precision;
+  AttributeLattice precision;
   std::vector<AttributeWedges> wedges;  // of levels 0 .. L-1
   std::vector<float> base_values;       // rows of level 0 as decoded
   std::vector<float> values;            // rows of all levels as wanted
@@ -24,7 +24,7 @@ struct AttributeTarget {
 
 // base: level 0 as decoded; values: rows of all levels in the order of its wedge mesh; positions: of the surface's finest level;
 // topologies: of its levels 0 .. L-1. Fails where the wedge mesh is no manifold.
-StatusOr<AttributeTarget> MakeAttributeTarget(const AttributePrecision& precision, const std::vector<Triangle>& split_corners,
+StatusOr<AttributeTarget> MakeAttributeTarget(const AttributeLattice& precision, const std::vector<Triangle>& split_corners,
                                               std::vector<float> base_values, std::vector<float> values,
                                               Span<const Topology> topologies, Span<const Vec3f> positions);
 
@@ -40,7 +40,7 @@ CodedAttribute QuantizeAttribute(const AttributeTarget& target, const AttributeH
                                  Span<const Vec3f> positions);
 
 // Root mean square of the differences over the surface: of normals and tangents in degrees, else Euclidean in the attribute's own units.
-double AttributeError(const AttributeTarget& target, const std::vector<float>& decoded);
+double AttributeRmsError(const AttributeTarget& target, const std::vector<float>& decoded);
 
 // Bits that the residuals take in a stream.
 double AttributeBits(const AttributeTarget& target, const CodedAttribute& coded);

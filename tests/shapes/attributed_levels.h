@@ -21,14 +21,14 @@ namespace lacerta::shapes {
 inline AttributedSemiRegularMesh SubdividedSoups(const std::vector<VertexSoup>& groups, int num_levels, const std::function<Vec3f(Vec3f)>& place,
                                                  const std::function<void(const LevelAttribute&, float*)>& change) {
   constexpr float kFine = 1.0f / 4096;
-  std::vector<AttributePrecision> precision;
+  std::vector<AttributeLattice> precision;
   std::vector<VertexSoup> rounded = groups;
   for (VertexSoup& soup : rounded) {
     for (Vec3f& p : soup.positions) {
       for (int c = 0; c < 3; ++c) p[c] = std::nearbyint(p[c] / kFine) * kFine;
     }
     for (VertexSoup::Attribute& a : soup.attributes) {
-      const bool known = std::any_of(precision.begin(), precision.end(), [&](const AttributePrecision& p) { return p.name == a.name; });
+      const bool known = std::any_of(precision.begin(), precision.end(), [&](const AttributeLattice& p) { return p.name == a.name; });
       const bool is_normal = a.kind == AttributeKind::kNormal;
       if (!known) precision.push_back({a.name, a.kind, a.components, is_normal ? 0.0f : kFine, is_normal ? 12 : 0});
       for (float& x : a.values) x = is_normal ? x : std::nearbyint(x / kFine) * kFine;

@@ -16,7 +16,7 @@ namespace lacerta {
 
 // An attribute of a base on its integer lattice.
 struct BaseAttribute {
-  AttributePrecision precision;
+  AttributeLattice precision;
   // #V x components: the value is step times these; of normals #V x 2, points of the octahedral lattice. Anything at vertices of
   // groups without the attribute.
   std::vector<int32_t> values;
@@ -38,7 +38,7 @@ struct AttributedBase {
 // where one of that name and number of components is in it. Fails as BaseMeshFromPositions does, and with kInvalidData where a value is off
 // its lattice.
 StatusOr<AttributedBase> AttributedBaseFromSoups(const std::vector<VertexSoup>& groups, float step,
-                                                 const std::vector<AttributePrecision>& precision);
+                                                 const std::vector<AttributeLattice>& precision);
 
 // The mesh of one level (0 = base) with its attributes; above the base, the still triangles come last. Not welded, and rows that no
 // triangle of the level uses may be there. Fails as MeshAtLevel does, and with kInvalidData where a wedge mesh does not fit.

@@ -58,7 +58,7 @@ StatusOr<CompactBase> DecodeCompactBase(Span<const uint8_t> bytes, const DecodeL
 StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level);
 
 // Where the values of an attribute lie in the base: what a host needs to turn its floats into integers.
-struct AttributePrecision {
+struct AttributeLattice {
   std::string name;  // as in glTF
   AttributeKind kind = AttributeKind::kGeneric;
   uint32_t components = 1;
@@ -72,7 +72,7 @@ struct RefinementInfo {
   float base_step = 0.0f;  // model units: what BaseMeshFromPositions wants; 0 where only the compact base tells it
   bool has_layers = false;  // levels come in several rounds
   bool is_attributed = false;  // the refinement wants an AttributedBase (lacerta/attributed_base.h)
-  std::vector<AttributePrecision> attributes;
+  std::vector<AttributeLattice> attributes;
 };
 
 struct AttributedBase;
