@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "draco/candidate_search.h"
@@ -34,7 +35,7 @@ StatusOr<bool> AttributedCandidate::CanMeet(const ErrorTargets& targets) const {
   return WorstRatio(errors, targets) < kLeastLeft;
 }
 
-StatusOr<std::optional<AttributedTrial>> AttributedCandidate::Meet(const ErrorTargets& targets, int tries, uint64_t num_samples) const {
+StatusOr<AttributedTrial> AttributedCandidate::Meet(const ErrorTargets& targets, int tries, uint64_t num_samples) const {
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors exact, input_.meter.Measure(FinestLevel(mesh_.Semiregular()), kRoughSamples));
   AttributedStreamOptions options;
   options.lambda = UsualLambda(Psnr(targets.distance, input_.meter.diagonal()), input_.meter.diagonal());
@@ -63,10 +64,15 @@ StatusOr<std::optional<AttributedTrial>> AttributedCandidate::Meet(const ErrorTa
     for (size_t a = 0; a < num_attributes; ++a) {
       options.errors[a] *= std::sqrt(change(errors.attributes[a].rms_99, exact.attributes[a].rms_99, targets.attributes[a]));
     }
-    if (trial.ratio <= 1 && (!best || trial.stream.size() < best->stream.size())) best = std::move(trial);
+    const auto is_better = [&](const AttributedTrial& other) {
+      if (trial.ratio <= 1 && other.ratio <= 1) return trial.stream.size() < other.stream.size();
+      return trial.ratio < other.ratio;
+    };
+    if (!best || is_better(*best)) best = std::move(trial);
     if (is_near) break;
   }
-  return best;
+  if (!best) return InvalidArgument("no attempt was allowed");
+  return std::move(*best);
 }
 
 }  // namespace lacerta

@@ -4,7 +4,6 @@
 #define LACERTA_DRACO_ATTRIBUTED_CANDIDATE_H_
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "draco/attributed_stream.h"
@@ -27,7 +26,7 @@ struct AttributedSurface {
 struct AttributedTrial {
   AttributedStream stream;
   SurfaceErrors errors;  // of the finest level as decoded, against the original
-  double ratio = 0;      // WorstRatio
+  double ratio = 0;      // WorstRatio: the targets are met where it is at most 1
 };
 
 class AttributedCandidate {
@@ -40,9 +39,9 @@ class AttributedCandidate {
   // Whether the remesh itself, not quantized, leaves something of the targets to quantization.
   StatusOr<bool> CanMeet(const ErrorTargets& targets) const;
 
-  // The fewest bytes found at which the stream meets the targets; nothing where none did in `tries` attempts, of which each takes the
-  // share of every error that the last one left. num_samples: of the measure.
-  StatusOr<std::optional<AttributedTrial>> Meet(const ErrorTargets& targets, int tries, uint64_t num_samples) const;
+  // The fewest bytes found at which the stream meets the targets; where none did in `tries` attempts, each of which corrects the precision of
+  // positions and every attribute by the errors of the last one, the nearest. num_samples: of the measure.
+  StatusOr<AttributedTrial> Meet(const ErrorTargets& targets, int tries, uint64_t num_samples) const;
 
  private:
   AttributedCandidate(const AttributedSurface& input, AttributedNormalMesh mesh) : input_(input), mesh_(std::move(mesh)) {}

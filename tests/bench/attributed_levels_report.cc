@@ -64,18 +64,14 @@ void WriteObj(const AttributedMesh& mesh, const std::string& path) {
 Status ReportStream(const AttributedSurface& input, uint32_t base, int levels, const ErrorTargets& targets) {
   const double start = Seconds();
   LACERTA_ASSIGN_OR_RETURN(const AttributedCandidate candidate, AttributedCandidate::Create(input, base, levels));
-  LACERTA_ASSIGN_OR_RETURN(const std::optional<AttributedTrial> trial, candidate.Meet(targets, 8, 50'000));
-  if (!trial) {
-    std::printf("  stream: out of reach, %.1f s\n", Seconds() - start);
-    return Status();
-  }
+  LACERTA_ASSIGN_OR_RETURN(const AttributedTrial trial, candidate.Meet(targets, 8, 50'000));
   size_t base_bytes = 0;
-  for (const Bytes& bytes : trial->stream.bases) base_bytes += bytes.size();
-  std::printf("  stream of %zu bytes: base %zu", trial->stream.size(), base_bytes);
+  for (const Bytes& bytes : trial.stream.bases) base_bytes += bytes.size();
+  std::printf("  stream of %zu bytes: base %zu", trial.stream.size(), base_bytes);
   for (size_t a = 0; a < candidate.mesh().attributes.size(); ++a) {
-    std::printf(", %s %zu (%.2f)", candidate.mesh().attributes[a].name.c_str(), trial->stream.residual_bytes[a], trial->errors.attributes[a].rms_99);
+    std::printf(", %s %zu (%.2f)", candidate.mesh().attributes[a].name.c_str(), trial.stream.residual_bytes[a], trial.errors.attributes[a].rms_99);
   }
-  std::printf("; %.2f dB, turned %.5f, ratio %.3f, %.1f s\n", Psnr(trial->errors.distance, input.meter.diagonal()), trial->errors.turned, trial->ratio,
+  std::printf("; %.2f dB, turned %.5f, ratio %.3f, %.1f s\n", Psnr(trial.errors.distance, input.meter.diagonal()), trial.errors.turned, trial.ratio,
               Seconds() - start);
   return Status();
 }
