@@ -74,11 +74,26 @@ void AppendIntegers(const AttributeLattice& p, const float* row, std::vector<int
   for (uint32_t c = 0; c < p.components; ++c) values->push_back(static_cast<int32_t>(std::lround(row[c] / p.step)));
 }
 
+// On a lattice of that step, or of one so much finer that points which stand apart still do: triangles hang together by their places, and
+// Draco leaves out those that have collapsed.
+BaseMesh LatticeThatKeepsApart(const TriangleMesh& base, double step) {
+  constexpr int kMostHalvings = 12;
+  std::map<std::array<float, 3>, uint32_t> first_at;
+  std::vector<uint32_t> first;
+  for (const Vec3f& p : base.positions) first.push_back(first_at.emplace(std::array<float, 3>{p.x, p.y, p.z}, static_cast<uint32_t>(first.size())).first->second);
+  BaseMesh lattice = RoundToLattice(base, static_cast<float>(step));
+  for (int i = 0; i < kMostHalvings && FirstAtSamePoint(lattice.lattice) != first; ++i) {
+    step /= 2;
+    lattice = RoundToLattice(base, static_cast<float>(step));
+  }
+  return lattice;
+}
+
 // The base on its lattices, triangles by groups; order: which triangle of the mesh each one is.
 StatusOr<AttributedBase> BaseOf(const AttributedNormalMesh& mesh, const AttributedStreamOptions& options, std::vector<uint32_t>* order) {
   const SemiRegularMesh& surface = mesh.surface.mesh;
   const std::vector<Vec3f> positions(surface.positions.begin(), surface.positions.begin() + surface.num_base_vertices);
-  const BaseMesh lattice = RoundToLattice({positions, surface.base_triangles}, static_cast<float>(BaseStepForSlope(options.lambda)));
+  const BaseMesh lattice = LatticeThatKeepsApart({positions, surface.base_triangles}, BaseStepForSlope(options.lambda));
   const uint32_t num_groups = mesh.base_groups.empty() ? 1 : *std::max_element(mesh.base_groups.begin(), mesh.base_groups.end()) + 1;
   if (num_groups > surface.base_triangles.size()) return InvalidArgument("there are groups without a triangle");
   AttributedBase base;

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "bench/gltf_surfaces.h"
+#include "draco/attributed_candidate.h"
 #include "draco/base_mesh_codec.h"
 #include "draco/candidate_search.h"
 #include "draco/decoded_distance.h"
@@ -57,6 +58,22 @@ void WriteObj(const AttributedMesh& mesh, const std::string& path) {
     }
     out << '\n';
   }
+}
+
+// Bytes of the whole stream that meets 1 texel, 2 degrees and a PSNR.
+Status ReportStream(const AttributedSurface& input, uint32_t base, int levels, const ErrorTargets& targets) {
+  const double start = Seconds();
+  LACERTA_ASSIGN_OR_RETURN(const AttributedCandidate candidate, AttributedCandidate::Create(input, base, levels));
+  LACERTA_ASSIGN_OR_RETURN(const AttributedTrial trial, candidate.Meet(targets, 8, 50'000));
+  size_t base_bytes = 0;
+  for (const Bytes& bytes : trial.stream.bases) base_bytes += bytes.size();
+  std::printf("  stream of %zu bytes: base %zu", trial.stream.size(), base_bytes);
+  for (size_t a = 0; a < candidate.mesh().attributes.size(); ++a) {
+    std::printf(", %s %zu (%.2f)", candidate.mesh().attributes[a].name.c_str(), trial.stream.residual_bytes[a], trial.errors.attributes[a].rms_99);
+  }
+  std::printf("; %.2f dB, turned %.5f, ratio %.3f, %.1f s\n", Psnr(trial.errors.distance, input.meter.diagonal()), trial.errors.turned, trial.ratio,
+              Seconds() - start);
+  return Status();
 }
 
 // Bytes of the positions alone at a PSNR, by bisection.
@@ -120,6 +137,8 @@ Status Report(const NamedSurface& named, const Wanted& wanted) {
   std::printf(", \"seconds\": %.2f}\n", seconds);
   if (wanted.psnr > 0) {
     LACERTA_ASSIGN_OR_RETURN(const std::string bytes, PositionBytes(named.mesh, coded, remesh.surface, wanted.psnr));
+    const ErrorTargets targets = TargetsFor(named.mesh, DistanceOfPsnr(wanted.psnr, meter.diagonal()), 1, 2);
+    LACERTA_RETURN_IF_ERROR(ReportStream({named.mesh, meter, parts, surface, history}, wanted.base, options.num_levels, targets));
     std::printf("  positions at %.1f dB: %s\n", wanted.psnr, bytes.c_str());
   }
   if (!wanted.obj.empty()) {
