@@ -64,6 +64,11 @@ StatusOr<AttributedTrial> AttributedCandidate::Meet(const ErrorTargets& targets,
     for (size_t a = 0; a < num_attributes; ++a) {
       options.errors[a] *= std::sqrt(change(errors.attributes[a].rms_99, exact.attributes[a].rms_99, targets.attributes[a]));
     }
+    if (trial.ratio > 1 && 2 * i >= tries) {  // the errors depend on each other: all finer, then
+      constexpr double kFiner = 0.6;
+      options.lambda *= kFiner;
+      for (double& error : options.errors) error *= kFiner;
+    }
     const auto is_better = [&](const AttributedTrial& other) {
       if (trial.ratio <= 1 && other.ratio <= 1) return trial.stream.size() < other.stream.size();
       return trial.ratio < other.ratio;

@@ -24,7 +24,7 @@ TEST(AttributedCandidateTest, StreamsMeetTheirTargetsAndLeaveLittleOfThem) {
     ASSERT_TRUE(candidate.CanMeet(targets).value());
     const AttributedTrial trial = candidate.Meet(targets, 10, 20'000).value();
     EXPECT_LE(trial.ratio, 1);
-    EXPECT_GT(trial.errors.distance, 0.7 * targets.distance);
+    EXPECT_GT(trial.ratio, 0.7);
     EXPECT_LT(trial.errors.turned, 1e-3);
     EXPECT_GT(trial.stream.size(), fewer);
     fewer = trial.stream.size();
