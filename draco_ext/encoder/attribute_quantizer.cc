@@ -28,8 +28,11 @@ void Difference(const AttributeLattice& p, const AttributeWedges& wedges, const 
     const Vec3f normal = VectorAt(predicted, row, 3), goal = Normalized(VectorAt(wanted, row, 3));
     const auto axes = NormalAxes(wedges, surface, edge, normal);
     // On the plane that touches the sphere at the prediction; goals beyond 80 degrees are brought to there.
-    const float height = std::max(Dot(normal, goal), 0.17f);
-    for (int c = 0; c < 2; ++c) (*difference)[static_cast<size_t>(c)] = Dot(axes[static_cast<size_t>(c)], goal) / height;
+    constexpr float kFarthest = 5.67f;
+    const float height = Dot(normal, goal), x = Dot(axes[0], goal), y = Dot(axes[1], goal), aside = std::max(std::hypot(x, y), 1e-6f);
+    const float scale = aside < kFarthest * height ? 1 / height : kFarthest / aside;
+    (*difference)[0] = x * scale;
+    (*difference)[1] = y * scale;
     return;
   }
   for (uint32_t c = 0; c < difference->size(); ++c) (*difference)[c] = wanted[row * p.components + c] - predicted[row * p.components + c];
