@@ -40,7 +40,7 @@ TEST(Precision, FewestBitsThatMeetTheTargets) {
     AttributeTargets targets;
     targets.uv_texels = 0.5 * share;
     targets.normal_degrees = 2.0 * share;
-    const AttributeLattice found = FindAttributeBits(primitive, targets, texels);
+    const AttributePrecision found = FindAttributeBits(primitive, targets, texels);
     ASSERT_EQ(found.reports.size(), 3u);
     EXPECT_EQ(found.bits.count("_MINE"), 0u);  // nobody said how exact it has to be
     EXPECT_LE(found.reports[0].error, targets.normal_degrees);
