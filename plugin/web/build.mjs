@@ -1,11 +1,12 @@
 // Builds dist/: the decoder as standalone WebAssembly, and the modules beside it. Needs em++ (cmake/install_packages.sh web).
 import {execFile} from 'node:child_process';
-import {cpSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync} from 'node:fs';
+import {copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync} from 'node:fs';
 import {availableParallelism} from 'node:os';
 import {basename, dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {promisify} from 'node:util';
 import {deflateRawSync, gzipSync} from 'node:zlib';
+import {transformSync} from 'esbuild';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, '..', '..');
@@ -19,7 +20,7 @@ for (const name of ['base_section', 'lacerta', 'no_draco_base_reader', 'stream_d
 sources.unshift(join(here, 'wasm/hot_paths.cc'), join(here, 'wasm/cosine.cc'));  // first: its instances are taken
 
 // Where the time goes; all else is built for size.
-const forSpeed = new Set(['hot_paths', 'butterfly', 'local_frame', 'subdivision', 'synthesis']);
+const forSpeed = new Set(['hot_paths', 'butterfly', 'coefficient_coding', 'local_frame', 'progressive_decoder', 'subdivision', 'synthesis']);
 const includes = ['draco_ext', 'draco_ext/include', 'plugin/c', 'plugin/c/include'].map(folder => `-I${join(root, folder)}`);
 const flags = ['-std=c++17', '-DNDEBUG', '-DLACERTA_TERSE', '-fno-exceptions', '-fno-rtti', '-flto', '-mbulk-memory', '-msign-ext', '-mnontrapping-fptoint',
   '-ffp-contract=off'];  // the floats of every other build
@@ -54,7 +55,12 @@ async function compileAll() {
 
 mkdirSync(objects, {recursive: true});
 rmSync(dist, {recursive: true, force: true});
-cpSync(join(here, 'src'), dist, {recursive: true});
+mkdirSync(dist);
+for (const name of readdirSync(join(here, 'src'))) {
+  const from = join(here, 'src', name), to = join(dist, name);
+  if (name.endsWith('.js')) writeFileSync(to, transformSync(readFileSync(from, 'utf8'), {minify: true, format: 'esm', target: 'es2022'}).code);
+  else copyFileSync(from, to);
+}
 await run('em++', [...flags, ...linking, ...await compileAll(), '-o', join(dist, 'lacerta.wasm')]);
 const wasm = readFileSync(join(dist, 'lacerta.wasm'));
 // Deflated, then as base64: what comes over the wire is as small as the separate file.
