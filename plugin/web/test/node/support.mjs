@@ -21,7 +21,12 @@ export const lacerta = (...args) => execFileSync(command, args, {stdio: ['ignore
 export function nativeLevel(path, level) {
   const out = join(scratch, 'native.ply');
   lacerta('unpack', path, '--level', String(level), '-o', out);
-  const bytes = readFileSync(out);
+  return readPly(out);
+}
+
+/** {positions, indices} of a binary PLY as the native command writes it. */
+export function readPly(path) {
+  const bytes = readFileSync(path);
   const end = bytes.indexOf('end_header\n') + 11;
   const header = bytes.subarray(0, end).toString('latin1');
   const vertices = Number(/element vertex (\d+)/.exec(header)[1]), faces = Number(/element face (\d+)/.exec(header)[1]);
