@@ -99,7 +99,8 @@ export async function show(url, {mode = byId('mode').value, name = url} = {}) {
       byId('progress').value = 1;
       return gltf;
     }
-    byId('quality').max = byId('quality').value = Math.max(...model.surfaces.map(surface => surface.lastPart));
+    byId('quality').max = Math.max(...model.surfaces.map(surface => surface.lastPart));
+    byId('quality').value = byId('quality').max;
     model.addEventListener('level', ({detail}) => {
       window.history_of_levels.push({level: detail.level, error: detail.error, triangles: detail.triangles, milliseconds: performance.now() - started});
       readOut(model, name);

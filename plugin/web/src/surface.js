@@ -2,7 +2,11 @@
 import {toFloats} from './arrays.js';
 
 const isCompact = bytes => bytes.length > 11 && bytes[8] === 0x4c && bytes[11] >> 4 === 1;
-const nextFrame = () => new Promise(resolve => globalThis.requestAnimationFrame ? requestAnimationFrame(resolve) : setTimeout(resolve));
+// At most one new geometry per frame, but frames that take long, or none in a hidden page, hold nothing up.
+const nextFrame = () => new Promise(resolve => {
+  globalThis.requestAnimationFrame?.(resolve);
+  setTimeout(resolve, 30);
+});
 
 export class Surface {
   part = -1;           // shown; -1: the fallback
