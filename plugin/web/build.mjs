@@ -70,7 +70,7 @@ const gzipped = path => gzipSync(readFileSync(path), {level: 9}).length;
 const rows = readdirSync(dist).filter(name => /\.(js|wasm)$/.test(name)).map(name => [name, statSync(join(dist, name)).size, gzipped(join(dist, name))]);
 for (const [name, bytes, zipped] of rows) console.log(`${name.padEnd(20)} ${String(bytes).padStart(8)} bytes ${String(zipped).padStart(7)} gzipped`);
 // What a page takes to decode, with the binary as a file or inside; the loader for three.js comes on top.
-const decoding = ['decoder.js', 'pool.js', 'worker.js', 'asset.js'];
+const decoding = ['decoder.js', 'pool.js', 'worker.js'];
 for (const build of [['lacerta.wasm', 'binary_file.js', 'index.js'], ['binary.js', 'binary_inline.js', 'inline.js']]) {
   const sum = rows.filter(([name]) => decoding.includes(name) || build.includes(name)).reduce((total, row) => total + row[2], 0);
   console.log(`decoder with ${build[0]}: ${sum} gzipped`);

@@ -62,22 +62,3 @@ export class DecoderPool {
 export function compile(url?: string | URL): Promise<WebAssembly.Module>;
 export function createDecoder(options?: DecoderOptions): Promise<Decoder>;
 export function createPool(options?: PoolOptions): Promise<DecoderPool>;
-
-export interface Segment { stream: number; part: number; offset: number; length: number; }
-export interface ProgressiveStream {
-  vertexCounts: number[];
-  triangleCounts: number[];
-  errors: number[];
-  min: number[];
-  max: number[];
-  normals?: 'smooth';
-  segments: Segment[];
-}
-export interface Progressive {
-  data: number;
-  refinements?: number;
-  streams: ProgressiveStream[];
-  order: Segment[];
-  length: number;
-}
-export function parseProgressive(json: object): Progressive | undefined;

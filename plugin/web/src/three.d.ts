@@ -1,4 +1,5 @@
-import type {DecoderPool, ProgressiveStream} from './index.js';
+import type {ProgressiveStream} from './asset.js';
+import type {DecoderPool} from './index.js';
 
 export interface LacertaOptions {
   /** The module `three` itself, as the page imports it. */
