@@ -16,7 +16,7 @@ LIBRARIES = {
     "meshoptimizer.h": {"gltf"},
     "tiny_gltf.h": {"gltf", "samples"},
     "CLI": {"plugin"},
-    "lacerta.h": {"samples"},
+    "lacerta.h": {"plugin", "samples"},
     "unistd.h": {"plugin"},
 }
 
@@ -34,7 +34,7 @@ INSTALLED = {
 # Installed headers that may include a third-party library, and which.
 INSTALLED_LIBRARIES = {"draco.h": {"draco"}, "tinygltf.h": {"tiny_gltf.h"}}
 
-C_STANDARD_LIBRARY = {"stddef.h", "stdint.h", "stdio.h", "stdlib.h", "string.h"}
+C_STANDARD_LIBRARY = {"stddef.h", "stdint.h", "stdio.h", "stdlib.h", "string.h", "time.h"}
 GLTF_FOLDERS = {"document", "extension", "mesh_file", "pack", "trim", "unpack", "validate"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
@@ -128,7 +128,7 @@ def main(root):
     sources = {}
     for folder in ["draco_ext", "gltf", "plugin", "samples"]:
         for file in sorted((root / folder).rglob("*")):
-            if file.suffix in {".c", ".h", ".cc", ".cpp"} and "build" not in file.relative_to(root).parts:
+            if file.suffix in {".c", ".h", ".cc", ".cpp"} and not {"build", "node_modules"} & set(file.relative_to(root).parts):
                 sources[file.relative_to(root).as_posix()] = file.read_text(encoding="utf-8")
     if len(sources) < 50:
         sys.exit(f"{root}: only {len(sources)} sources found; the first argument has to be the root of the repository")

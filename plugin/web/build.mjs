@@ -20,7 +20,7 @@ for (const name of ['base_section', 'lacerta', 'no_draco_base_reader', 'stream_d
 sources.unshift(join(here, 'wasm/hot_paths.cc'), join(here, 'wasm/cosine.cc'));  // first: its instances are taken
 
 // Where the time goes; all else is built for size.
-const forSpeed = new Set(['hot_paths', 'butterfly', 'coefficient_coding', 'local_frame', 'progressive_decoder', 'subdivision', 'synthesis']);
+const forSpeed = new Set(['hot_paths', 'butterfly', 'coefficient_coding', 'subdivision', 'synthesis']);
 const includes = ['draco_ext', 'draco_ext/include', 'plugin/c', 'plugin/c/include'].map(folder => `-I${join(root, folder)}`);
 const flags = ['-std=c++17', '-DNDEBUG', '-DLACERTA_TERSE', '-fno-exceptions', '-fno-rtti', '-flto', '-mbulk-memory', '-msign-ext', '-mnontrapping-fptoint',
   '-ffp-contract=off'];  // the floats of every other build
@@ -70,7 +70,7 @@ const gzipped = path => gzipSync(readFileSync(path), {level: 9}).length;
 const rows = readdirSync(dist).filter(name => /\.(js|wasm)$/.test(name)).map(name => [name, statSync(join(dist, name)).size, gzipped(join(dist, name))]);
 for (const [name, bytes, zipped] of rows) console.log(`${name.padEnd(20)} ${String(bytes).padStart(8)} bytes ${String(zipped).padStart(7)} gzipped`);
 // What a page takes to decode, with the binary as a file or inside; the loader for three.js comes on top.
-const decoding = ['decoder.js', 'pool.js', 'worker.js', 'asset.js'];
+const decoding = ['decoder.js', 'pool.js', 'worker.js'];
 for (const build of [['lacerta.wasm', 'binary_file.js', 'index.js'], ['binary.js', 'binary_inline.js', 'inline.js']]) {
   const sum = rows.filter(([name]) => decoding.includes(name) || build.includes(name)).reduce((total, row) => total + row[2], 0);
   console.log(`decoder with ${build[0]}: ${sum} gzipped`);

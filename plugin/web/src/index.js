@@ -5,7 +5,6 @@ import {DecoderPool} from './pool.js';
 
 export {Decoder, LacertaError} from './decoder.js';
 export {DecoderPool} from './pool.js';
-export {parseProgressive} from './asset.js';
 
 /** lacerta.wasm, compiled; once for all who ask. url: where it is, if not beside this module. */
 let compiled;

@@ -27,9 +27,9 @@ test('over 100 kB/s the base shows within half a second, and the surface sharpen
   // The best of three for both: other programs take their share of the machine.
   let history, draco = Infinity;
   for (let run = 0; run < 3; ++run) {
-    const levels = await loadWhole(fresh.page, `${asset.file}?kbps=100`);
+    const levels = await loadWhole(fresh.page, `${asset.file}?kbps=100&run=${run}`);
     if (!history || levels.at(-1).milliseconds < history.at(-1).milliseconds) history = levels;
-    await fresh.page.evaluate(url => window.viewer.showDraco(url), `${asset.twinFile}?kbps=100`);
+    await fresh.page.evaluate(url => window.viewer.showDraco(url), `${asset.twinFile}?kbps=100&run=${run}`);  // another address: nothing comes from the cache
     draco = Math.min(draco, await fresh.page.evaluate('window.draco_shown'));
   }
   const {min, max, errors} = await fresh.page.evaluate('(({min, max, errors}) => ({min, max, errors}))(window.model.surfaces[0].stream)');
@@ -42,7 +42,7 @@ test('over 100 kB/s the base shows within half a second, and the surface sharpen
   const table = rows.map(({what, level, error, milliseconds}) => `${asset.name},${what},${level},${error},${psnr(error)},${milliseconds.toFixed(0)}`);
   const target = process.env.LACERTA_UPDATE_RESULTS ? join(root, 'docs/results') : pictures;
   writeFileSync(join(target, 'streaming_curve.csv'), `mesh,file,level,error,psnr,milliseconds\n${table.join('\n')}\n`);
-  await drawCurves(await page.context().newPage(), rows.map(row => ({...row, psnr: Number(psnr(row.error))})), join(target, 'streaming_curve.png'));
+  await drawCurves(await page.context().browser().newPage(), rows.map(row => ({...row, psnr: Number(psnr(row.error))})), join(target, 'streaming_curve.png'));
   assert.ok(history[0].milliseconds < 500, `base after ${history[0].milliseconds} ms`);
   const good = levels.find(({error}) => 20 * Math.log10(diagonal / error) >= 65);
   // A third of Draco's time is the aim, at sizes where the link and not the start of a request counts; half of it has to be there always.
