@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 namespace lacerta {
 namespace {
@@ -30,15 +31,10 @@ Lattice FitLattice(const AccessorData& data, int bits) {
   Lattice lattice;
   lattice.bits = bits;
   float range = 0.0f;
-  for (uint32_t c = 0; c < data.components && data.count > 0; ++c) {
-    float low = data.Float(0, c);
-    float high = low;
-    for (uint64_t i = 1; i < data.count; ++i) {
-      low = std::min(low, data.Float(i, c));
-      high = std::max(high, data.Float(i, c));
-    }
-    lattice.origin[c] = low;
-    range = std::max(range, high - low);
+  const std::vector<ComponentRange> ranges = ComponentRanges(data);
+  for (size_t c = 0; c < ranges.size(); ++c) {
+    lattice.origin[c] = ranges[c].low;
+    range = std::max(range, ranges[c].high - ranges[c].low);
   }
   lattice.range = range > 0.0f ? range : 1.0f;
   return lattice;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,15 +14,6 @@
 
 namespace lacerta {
 namespace {
-
-AccessorData FloatData(const std::vector<float>& values, uint32_t components) {
-  AccessorData data;
-  data.components = components;
-  data.count = values.size() / components;
-  data.bytes.resize(values.size() * sizeof(float));
-  if (!values.empty()) std::memcpy(data.bytes.data(), values.data(), data.bytes.size());
-  return data;
-}
 
 // Back to the integers that a color came as: unsigned and normalized are all that glTF allows.
 AccessorData ToTypeOf(const AccessorData& original, AccessorData floats) {
@@ -60,7 +50,7 @@ StatusOr<Primitive> ToPrimitive(const VertexSoup& soup, const Primitive& origina
         });
     if (found == soup.attributes.end()) return InternalError("the simplified surface has lost " + attribute.name);
     primitive.attributes.push_back(
-        {attribute.name, ToTypeOf(attribute.data, FloatData(found->values, found->components))});
+        {attribute.name, ToTypeOf(attribute.data, MakeFloatAccessor(found->values, found->components))});
   }
   return primitive;
 }

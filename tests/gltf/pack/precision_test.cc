@@ -17,17 +17,11 @@ Primitive Textured() {
   Primitive primitive;
   primitive.num_vertices = mesh.positions.size();
   primitive.triangles = mesh.triangles;
-  AccessorData texture;
-  texture.components = 2;
-  texture.count = mesh.positions.size();
-  for (const Vec3f& p : mesh.positions) {
-    const float uv[2] = {0.5f + 0.45f * p.x, 0.5f + 0.45f * p.y};
-    const auto* raw = reinterpret_cast<const uint8_t*>(uv);
-    texture.bytes.insert(texture.bytes.end(), raw, raw + sizeof(uv));
-  }
+  std::vector<float> texture;
+  for (const Vec3f& p : mesh.positions) texture.insert(texture.end(), {0.5f + 0.45f * p.x, 0.5f + 0.45f * p.y});
   primitive.attributes = {{"POSITION", MakeFloatAccessor(mesh.positions)},
                           {"NORMAL", MakeFloatAccessor(DeriveNormals(mesh))},
-                          {"TEXCOORD_0", texture},
+                          {"TEXCOORD_0", MakeFloatAccessor(texture, 2)},
                           {"_MINE", MakeFloatAccessor(mesh.positions)}};
   return primitive;
 }

@@ -26,17 +26,11 @@ Primitive Half(const TriangleMesh& ball, bool upper) {
   Primitive primitive;
   primitive.num_vertices = half.positions.size();
   primitive.triangles = half.triangles;
-  AccessorData texture;
-  texture.components = 2;
-  texture.count = half.positions.size();
-  for (const Vec3f& p : half.positions) {
-    const float uv[2] = {0.5f + 0.4f * p.x, 0.5f + 0.4f * p.y};
-    const auto* raw = reinterpret_cast<const uint8_t*>(uv);
-    texture.bytes.insert(texture.bytes.end(), raw, raw + sizeof(uv));
-  }
+  std::vector<float> texture;
+  for (const Vec3f& p : half.positions) texture.insert(texture.end(), {0.5f + 0.4f * p.x, 0.5f + 0.4f * p.y});
   primitive.attributes = {{"POSITION", MakeFloatAccessor(half.positions)},
                           {"NORMAL", MakeFloatAccessor(DeriveNormals(ball))},
-                          {"TEXCOORD_0", texture}};
+                          {"TEXCOORD_0", MakeFloatAccessor(texture, 2)}};
   return primitive;
 }
 
