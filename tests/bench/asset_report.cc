@@ -1,6 +1,7 @@
 // One asset packed, beside stock Draco with the fewest bits that meet the same errors, measured in the same way:
 //   asset_report ORIGINAL.glb PACKED.glb UNPACKED.glb [--psnr DB] [--texels N] [--degrees N]
-// Prints one line of JSON. Errors are those of the worst mesh (meshes that touch count as one); UV in texels of 1024.
+// Prints one line of JSON. Errors are those of the worst mesh (meshes that touch count as one); UV in texels as the packer counts
+// them: of the asset's largest texture (at least 1024), as often as KHR_texture_transform repeats it.
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
@@ -15,13 +16,14 @@
 #include <utility>
 #include <vector>
 
-#include "bench/gltf_surfaces.h"
 #include "document/draco_primitive.h"
 #include "document/place.h"
 #include "document/primitive.h"
 #include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
+#include "pack/attributed_family.h"
 #include "pack/family.h"
+#include "pack/texel_scale.h"
 #include "remesh/simplify_to_errors.h"
 
 namespace lacerta {
@@ -54,17 +56,20 @@ StatusOr<Asset> Read(const std::string& path) {
 struct Judge {
   std::vector<size_t> members;
   double scale = 0.0;  // of the PSNR: the scene's diagonal in mesh units
+  TexelScale texels;
+  AttributedMesh original;
   SurfaceErrorMeter meter;
-  std::vector<AttributeKind> kinds;
+  ErrorTargets units;  // one texel, one degree
 };
 
-StatusOr<AttributedMesh> Join(const std::vector<Primitive>& primitives, const std::vector<size_t>& members) {
-  std::vector<VertexSoup> soups;
-  for (const size_t member : members) soups.push_back(ToSoup(primitives[member]));
-  return WeldSoups(soups);
+StatusOr<AttributedMesh> Join(const std::vector<Primitive>& primitives, const std::vector<size_t>& members, const TexelScale& texels) {
+  std::vector<const Primitive*> own;
+  for (const size_t member : members) own.push_back(&primitives[member]);
+  return ToAttributedMesh(own, texels, OtherAttributes::kLeaveOut);
 }
 
 StatusOr<std::vector<Judge>> MakeJudges(const Asset& original) {
+  const uint64_t side = TexelSide(original.document);
   std::vector<std::vector<Place>> places;
   for (const Place& place : original.places) places.push_back({place});
   std::vector<PlacedSurface> surfaces;
@@ -72,14 +77,24 @@ StatusOr<std::vector<Judge>> MakeJudges(const Asset& original) {
   LACERTA_ASSIGN_OR_RETURN(const Families families, FindFamilies(original.document, surfaces));
   std::vector<Judge> judges;
   for (size_t f = 0; f < families.families.size(); ++f) {
-    const Family& family = families.families[f];
-    LACERTA_ASSIGN_OR_RETURN(AttributedMesh mesh, Join(original.primitives, family.members));
-    StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(mesh);
+    const std::vector<size_t>& members = families.families[f].members;
+    std::map<std::pair<size_t, uint64_t>, double> scales;
+    for (size_t m = 0; m < members.size(); ++m) {
+      for (uint64_t set = 0; set < 8; ++set) scales[{m, set}] = TexelsPerUnit(original.document, places[members[m]], set, side);
+    }
+    const TexelScale texels = [scales, side](size_t member, uint64_t set) {
+      const auto found = scales.find({member, set});
+      return found == scales.end() ? static_cast<double>(side) : found->second;
+    };
+    LACERTA_ASSIGN_OR_RETURN(AttributedMesh mesh, Join(original.primitives, members, texels));
+    StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(mesh, static_cast<double>(side));
     if (!meter.ok()) continue;  // nothing to see
     const double scale = FamilyError(families, f, 60.0) * 1000.0;
-    Judge judge{family.members, scale, std::move(meter).value(), {}};
-    for (const MeshAttribute& attribute : mesh.attributes) judge.kinds.push_back(attribute.kind);
-    judges.push_back(std::move(judge));
+    AttributeTargets one;
+    one.uv_texels = 1.0;
+    one.normal_degrees = 1.0;
+    ErrorTargets units = FamilyTargets(mesh, 1.0, one, side);
+    judges.push_back({members, scale, texels, std::move(mesh), std::move(meter).value(), std::move(units)});
   }
   return judges;
 }
@@ -88,15 +103,14 @@ StatusOr<Errors> MeasureAll(const std::vector<Judge>& judges, const std::vector<
   constexpr uint64_t kSamples = 20'000;
   Errors worst;
   for (const Judge& judge : judges) {
-    LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, Join(primitives, judge.members));
+    LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, Join(primitives, judge.members, judge.texels));
     LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, judge.meter.Measure(mesh, kSamples));
     worst.psnr = std::min(worst.psnr, Psnr(errors.distance, judge.scale));
-    for (size_t a = 0; a < judge.kinds.size(); ++a) {
-      if (judge.kinds[a] == AttributeKind::kTextureCoordinates) {
-        worst.texels = std::max(worst.texels, errors.attributes[a].rms_99);
-      } else if (judge.kinds[a] == AttributeKind::kNormal) {
-        worst.degrees = std::max(worst.degrees, errors.attributes[a].rms_99);
-      }
+    for (size_t a = 0; a < judge.original.attributes.size(); ++a) {
+      const double error = errors.attributes[a].rms_99 / judge.units.attributes[a];
+      const AttributeKind kind = judge.original.attributes[a].kind;
+      if (kind == AttributeKind::kTextureCoordinates) worst.texels = std::max(worst.texels, error);
+      if (kind == AttributeKind::kNormal || kind == AttributeKind::kTangent) worst.degrees = std::max(worst.degrees, error);
     }
   }
   return worst;
