@@ -53,7 +53,8 @@ TEST(Simplified, HalvesStayJoinedAndMeetTheErrors) {
   const Primitive upper = Half(ball, true);
   const Primitive lower = Half(ball, false);
   const double error = DistanceOfPsnr(55.0, BoundingBoxDiagonal(ball));
-  const auto family = SimplifyFamily({&upper, &lower}, error, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
+  const FamilyMeter meter({&upper, &lower}, error, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
+  const auto family = SimplifyFamily(meter);
   ASSERT_TRUE(family.ok()) << family.status().message();
   ASSERT_EQ(family.value().members.size(), 2u);
   EXPECT_LE(family.value().error, error);
@@ -74,7 +75,7 @@ TEST(Simplified, HalvesStayJoinedAndMeetTheErrors) {
 TEST(Simplified, RefusesWhatCannotBeInterpolated) {
   Primitive primitive = Half(testing::WavySphere(8, 12), true);
   primitive.attributes.push_back({"_MINE", primitive.attributes[0].data});
-  const auto family = SimplifyFamily({&primitive}, 0.01, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
+  const auto family = SimplifyFamily(FamilyMeter({&primitive}, 0.01, {}, 1024, [](size_t, uint64_t) { return 1024.0; }));
   EXPECT_EQ(family.status().code(), StatusCode::kUnsupported);
 }
 
