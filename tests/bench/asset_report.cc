@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -170,6 +171,51 @@ StatusOr<uint64_t> EncodeStock(const std::vector<Primitive>& primitives, const B
   return sum;
 }
 
+struct Stock {
+  Bits bits = {};
+  uint64_t bytes = 0;
+  Errors errors;
+};
+
+// The smallest of the sizes at which all errors are met: positions from the fewest bits on that meet theirs, for each the fewest bits of
+// the attributes, until finer positions no longer pay. Coarse positions move the texture, too.
+StatusOr<Stock> FewestStock(const std::vector<Primitive>& primitives, const std::vector<Judge>& judges, const Errors& wanted) {
+  constexpr int kMostBits = 20;
+  constexpr int kPatience = 2;
+  std::optional<Stock> best;
+  Stock last;
+  Bits start = {0, 6, 4};
+  int worse = 0;
+  for (int positions = 7; positions <= kMostBits && worse < kPatience; ++positions) {
+    Stock stock;
+    stock.bits = {positions, start[1], start[2]};
+    bool met = false, far = false;
+    for (;;) {
+      std::vector<Primitive> decoded;
+      LACERTA_ASSIGN_OR_RETURN(stock.bytes, EncodeStock(primitives, stock.bits, &decoded));
+      const StatusOr<Errors> errors = MeasureAll(judges, decoded);  // a group may have lost its area
+      stock.errors = errors.ok() ? errors.value() : Errors{0.0, 1e9, 1e9};
+      far = stock.errors.psnr < wanted.psnr;
+      const bool blurred = stock.errors.texels > wanted.texels, tilted = stock.errors.degrees > wanted.degrees;
+      met = !far && !blurred && !tilted;
+      if (met || far || (blurred && stock.bits[1] == kMostBits) || (tilted && stock.bits[2] == kMostBits)) break;
+      stock.bits[1] += blurred;
+      stock.bits[2] += tilted;
+      // Many bits more that do not help: positions are too coarse.
+      if ((blurred && stock.bits[1] > start[1] + 8) || (tilted && stock.bits[2] > start[2] + 6)) break;
+    }
+    last = stock;
+    if (!met) continue;
+    ++worse;
+    // Finer positions ask for no more bits of the attributes, and for hardly fewer than two less.
+    start = {0, std::max(stock.bits[1] - 2, 6), std::max(stock.bits[2] - 2, 4)};
+    if (best.has_value() && stock.bytes >= best->bytes) continue;
+    worse = 0;
+    best = stock;
+  }
+  return best.value_or(last);
+}
+
 uint64_t BorderEdges(const TriangleMesh& mesh) {
   const auto key = [](const Vec3f& p) { return std::make_tuple(p.x, p.y, p.z); };
   std::map<std::tuple<float, float, float>, size_t> ids;
@@ -192,37 +238,14 @@ Status Report(const std::vector<std::string>& files, const Errors& wanted) {
   LACERTA_ASSIGN_OR_RETURN(const FlattenResult before, FlattenGltf(ReadFile(files[0]).value(), {}));
   LACERTA_ASSIGN_OR_RETURN(const FlattenResult after, FlattenGltf(ReadFile(files[2]).value(), {}));
 
-  // Each kind of bits from few to many, positions first: coarse positions move the texture too.
-  Bits bits = {7, 6, 4};
-  constexpr int kMostBits = 20;
-  std::vector<Primitive> decoded;
-  Errors stock;
-  uint64_t stock_bytes = 0;
-  for (;;) {
-    LACERTA_ASSIGN_OR_RETURN(stock_bytes, EncodeStock(original.primitives, bits, &decoded));
-    const StatusOr<Errors> errors = MeasureAll(judges, decoded);  // a group may have lost its area
-    stock = errors.ok() ? errors.value() : Errors{0.0, 1e9, 1e9};
-    const bool far = stock.psnr < wanted.psnr, blurred = stock.texels > wanted.texels, tilted = stock.degrees > wanted.degrees;
-    if (!far && !blurred && !tilted) break;
-    const Bits last = bits;
-    if (far) {
-      bits[0] = std::min(bits[0] + 1, kMostBits);
-    } else {
-      if (blurred) bits[1] = std::min(bits[1] + 1, kMostBits);
-      if (tilted) bits[2] = std::min(bits[2] + 1, kMostBits);
-      // More bits of texture coordinates and normals do not help where positions slide.
-      if (blurred && bits[1] > 12 && bits[0] < kMostBits) ++bits[0], bits[1] = 10;
-      if (tilted && bits[2] > 10 && bits[0] < kMostBits) ++bits[0], bits[2] = 6;
-    }
-    if (bits == last) break;
-  }
+  LACERTA_ASSIGN_OR_RETURN(const Stock stock, FewestStock(original.primitives, judges, wanted));
   uint64_t vertices = 0;
   for (const Primitive& primitive : original.primitives) vertices += primitive.num_vertices;
   std::printf("{\"vertices\": %llu, \"psnr\": %.2f, \"texels\": %.3f, \"degrees\": %.3f, \"borderEdgesBefore\": %llu, \"borderEdgesAfter\": %llu, "
               "\"stockBytes\": %llu, \"stockBits\": [%d, %d, %d], \"stockPsnr\": %.2f, \"stockTexels\": %.3f, \"stockDegrees\": %.3f}\n",
               static_cast<unsigned long long>(vertices), ours.psnr, ours.texels, ours.degrees,
               static_cast<unsigned long long>(BorderEdges(before.mesh)), static_cast<unsigned long long>(BorderEdges(after.mesh)),
-              static_cast<unsigned long long>(stock_bytes), bits[0], bits[1], bits[2], stock.psnr, stock.texels, stock.degrees);
+              static_cast<unsigned long long>(stock.bytes), stock.bits[0], stock.bits[1], stock.bits[2], stock.errors.psnr, stock.errors.texels, stock.errors.degrees);
   return Status();
 }
 
