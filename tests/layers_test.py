@@ -19,11 +19,12 @@ LIBRARIES = {
     "unistd.h": {"plugin"},
 }
 
-# The layer that an installed header belongs to. decoder.h is with `common`: it holds what both sides share, the base
-# mesh and the limits.
+# The layer that an installed header belongs to. decoder.h and attributed_*.h are with `common`: they hold what both sides share, the base
+# mesh with its attributes and the limits.
 INSTALLED = {
     "status.h": "common", "vec3.h": "common", "mesh.h": "common", "decoder.h": "common",
-    "surface_distance.h": "geometry", "attributed_mesh.h": "geometry", "attribute_distance.h": "geometry",
+    "attributed_mesh.h": "common", "attributed_levels.h": "common", "attributed_base.h": "common",
+    "surface_distance.h": "geometry", "attribute_distance.h": "geometry",
     "clean.h": "remesh", "remesh.h": "remesh",
     "codec.h": "draco", "draco.h": "draco",
     "file_io.h": "gltf", "mesh_file.h": "gltf", "gltf.h": "gltf", "parsed_gltf.h": "gltf", "tinygltf.h": "gltf",

@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/attribute_layout.h"
 #include "common/coefficient_sets.h"
+#include "lacerta/attributed_base.h"
 #include "lacerta/decoder.h"
 
 namespace lacerta {
@@ -28,7 +30,7 @@ inline constexpr int32_t kMaxLatticeValue = (1 << 24) - 1;  // a binary32 holds 
 inline constexpr uint8_t kHasTags = 1 << 4;
 inline constexpr uint8_t kHasBaseStep = 1 << 5;
 inline constexpr uint8_t kHasLayers = 1 << 6;  // levels come in several segments, which tell what they are
-inline constexpr uint8_t kUnknownFlags = 0x80;
+inline constexpr uint8_t kHasAttributes = 1 << 7;
 
 // Flags of a level.
 inline constexpr uint8_t kCodesNormal = 1;
@@ -43,6 +45,11 @@ struct RefinementHeader {
   std::vector<LevelSteps> steps;  // of levels 1, 2, ...
   bool has_layers = false;
   Bytes tags;                     // payload of CodeBaseTags (common/base_tags_coding.h); empty: none
+  bool is_attributed = false;     // made for an AttributedBase
+  std::vector<AttributeHeader> attributes;
+
+  // Whether level i + 1 has no segment.
+  bool IsSilent(size_t i) const;
 };
 
 // What a segment of a stream with layers holds: level `level` on steps 2^shift times those of the header.
@@ -58,6 +65,10 @@ inline LayerSegment LayerSegmentFromByte(uint8_t byte) { return {byte & 15, byte
 // Lower half of the CRC-32 over step, lattice values (three per vertex) and triangles (three indices each) as 4-byte little-endian
 // words.
 uint16_t BaseChecksum(const BaseMesh& base);
+
+// The same of a base with attributes: followed by the sizes of the groups, and for each attribute by its flags of groups and by the
+// values at the vertices of triangles that have it, in the order of these vertices.
+uint16_t BaseChecksum(const AttributedBase& base);
 
 // The checksum that a segment carries. what: the level, or LayerSegmentByte.
 uint16_t SegmentChecksum(int what, Span<const uint8_t> payload);

@@ -4,12 +4,15 @@
 #include <string>
 #include <utility>
 
+#include "common/attributed_level.h"
 #include "common/base_tags.h"
 #include "common/base_tags_coding.h"
 #include "common/butterfly.h"
 #include "common/coefficient_coding.h"
+#include "common/glued_base.h"
 #include "common/stream_layout.h"
 #include "common/subdivision.h"
+#include "decoder/attribute_decoder.h"
 #include "decoder/layer_decoder.h"
 #include "decoder/level_limits.h"
 #include "decoder/range_decoder.h"
@@ -36,10 +39,21 @@ Status CheckBase(const BaseMesh& base, const DecodeLimits& limits) {
   return Status();
 }
 
-Status CheckHeaderFitsBase(const RefinementHeader& header, const BaseMesh& base) {
+// checksum: of the base.
+Status CheckHeaderFitsBase(const RefinementHeader& header, const BaseMesh& base, uint16_t checksum) {
   const bool same_step = header.base_step == 0 || header.base_step == base.step;
-  if (same_step && header.base_checksum == BaseChecksum(base)) return Status();
+  if (same_step && header.base_checksum == checksum) return Status();
   return InvalidData("the refinement was made for another base mesh: the base was edited, reordered or mixed up");
+}
+
+// A base that decodes as a different attribute would is not noticed by its checksum.
+Status CheckAttributesFit(const RefinementHeader& header, const std::vector<AttributeLattice>& given) {
+  const auto same = [](const AttributeHeader& a, const AttributeLattice& b) {
+    const AttributeLattice& p = a.precision;
+    return p.kind == b.kind && p.components == b.components && p.step == b.step && p.octahedral_bits == b.octahedral_bits;
+  };
+  if (std::equal(header.attributes.begin(), header.attributes.end(), given.begin(), given.end(), same)) return Status();
+  return InvalidData("the attributes of the base are not those of the refinement");
 }
 
 Status CheckValences(const Topology& t) {
@@ -65,6 +79,11 @@ bool IsFinite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) 
 struct ProgressiveDecoder::State {
   SemiRegularMesh mesh;
   BaseMesh base;
+  uint16_t base_checksum = 0;
+  bool is_attributed = false;              // the base was an AttributedBase
+  std::vector<AttributeLattice> precision;  // of its attributes
+  std::vector<uint32_t> base_groups;       // #F0 then
+  std::vector<LevelAttribute> attributes;
   RefinementOptions options;
 
   std::optional<RefinementHeader> header;
@@ -77,6 +96,7 @@ struct ProgressiveDecoder::State {
   size_t num_still = 0;  // triangles that no level splits
   std::optional<StencilTable> stencils;
   CodingState coding;
+  std::vector<AttributeDecoder> attribute_decoders;
   std::optional<LayerDecoder> layers;      // where the stream has layers; topology, stencils and coding are not used then
   std::vector<LayerPayload> waiting;       // for the segment that they are to be shown with
   size_t waiting_size = 0;                 // bytes of these segments
@@ -90,25 +110,35 @@ struct ProgressiveDecoder::State {
     return !refinement.ok() || (header && (layers ? layers->is_complete() : mesh.num_levels >= last_level()));
   }
 
+  void Start(BaseMesh given, uint16_t checksum, const RefinementOptions& wanted);
   // Reads on in `bytes`; returns how many of them were used, or nothing where they end too early.
   StatusOr<std::optional<size_t>> TakeHeader(Span<const uint8_t> bytes);
   StatusOr<std::optional<size_t>> TakeSegment(Span<const uint8_t> bytes);
   StatusOr<std::optional<size_t>> TakeLayer(Span<const uint8_t> bytes);
+  Status StartAttributes();
   void ReachFinestLevel();
+  Status CheckNextFits();
   Status AddLevel(const LevelSteps& steps, Span<const uint8_t> payload);
+  Status AddPositions(const LevelSteps& steps, RangeDecoder* decoder);
+  Status AddAttributes(RangeDecoder* decoder);
 };
 
 StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeHeader(Span<const uint8_t> bytes) {
   LACERTA_ASSIGN_OR_RETURN(std::optional<ReadHeader> read,
                            ReadRefinementHeader(bytes, MaxTagBytes(base.lattice.size(), base.triangles.size())));
   if (!read) return std::optional<size_t>();
-  LACERTA_RETURN_IF_ERROR(CheckHeaderFitsBase(read->header, base));
+  if (read->header.is_attributed != is_attributed) {
+    return InvalidData(is_attributed ? "the refinement has no attributes: it wants a base without" : "the refinement has attributes: it wants a base with them");
+  }
+  LACERTA_RETURN_IF_ERROR(CheckHeaderFitsBase(read->header, base, base_checksum));
+  LACERTA_RETURN_IF_ERROR(CheckAttributesFit(read->header, precision));
   BaseTags tags;
   LACERTA_ASSIGN_OR_RETURN(topology, ReadTopology(base, read->header.tags, &tags));
   LACERTA_RETURN_IF_ERROR(CheckValences(topology));
   mesh.tags = std::move(tags);
   num_still = NumStill(mesh.tags);
   header = std::move(read->header);
+  LACERTA_RETURN_IF_ERROR(StartAttributes());
   if (header->has_layers) {
     layers.emplace(header->steps, std::move(topology), num_still, last_level(), options.limits);
   } else {
@@ -133,10 +163,10 @@ StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeLayer(Span<const 
 StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeSegment(Span<const uint8_t> bytes) {
   const int level = mesh.num_levels + 1;
   ReachFinestLevel();
-  LACERTA_RETURN_IF_ERROR(CheckLevelFits(topology, num_still, level, options.limits));
+  LACERTA_RETURN_IF_ERROR(CheckNextFits());
   const LevelSteps& steps = header->steps[static_cast<size_t>(mesh.num_levels)];
   std::optional<ReadSegment> segment = ReadSegment();  // of a silent level
-  if (!steps.is_silent()) {
+  if (!header->IsSilent(static_cast<size_t>(mesh.num_levels))) {
     LACERTA_ASSIGN_OR_RETURN(segment, ReadRefinementSegment(bytes, level));
   }
   if (!segment) return std::optional<size_t>();
@@ -150,7 +180,48 @@ void ProgressiveDecoder::State::ReachFinestLevel() {
   ++topology_level;
 }
 
+Status ProgressiveDecoder::State::StartAttributes() {
+  for (size_t i = 0; i < attributes.size(); ++i) {
+    LACERTA_ASSIGN_OR_RETURN(AttributeDecoder decoder, AttributeDecoder::Create(header->attributes[i], attributes[i], mesh.tags.still));
+    attribute_decoders.push_back(std::move(decoder));
+  }
+  return Status();
+}
+
+Status ProgressiveDecoder::State::CheckNextFits() {
+  LACERTA_RETURN_IF_ERROR(CheckLevelFits(topology, num_still, mesh.num_levels + 1, options.limits));
+  for (AttributeDecoder& decoder : attribute_decoders) LACERTA_RETURN_IF_ERROR(decoder.CheckNextFits(options.limits));
+  return Status();
+}
+
+// Adds the level at hand to all attributes or, where one of them fails, to none.
+Status ProgressiveDecoder::State::AddAttributes(RangeDecoder* decoder) {
+  const SurfaceLevel surface{topology, mesh.positions};
+  std::vector<size_t> before;
+  for (const LevelAttribute& a : attributes) before.push_back(a.values.size());
+  for (size_t i = 0; i < attributes.size(); ++i) {
+    Status added = attribute_decoders[i].AddLevel(surface, decoder, &attributes[i]);
+    if (added.ok()) continue;
+    for (size_t k = 0; k < i; ++k) attributes[k].values.resize(before[k]);
+    return added;
+  }
+  return Status();
+}
+
 Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const uint8_t> payload) {
+  RangeDecoder decoder(payload);
+  Status added = AddPositions(steps, &decoder);
+  if (added.ok()) added = AddAttributes(&decoder);
+  if (!added.ok()) {
+    mesh.positions.resize(topology.num_vertices);
+    return added;
+  }
+  ++mesh.num_levels;
+  ++num_states;
+  return Status();
+}
+
+Status ProgressiveDecoder::State::AddPositions(const LevelSteps& steps, RangeDecoder* decoder) {
   QuantizedLevel quantized;
   if (!steps.is_silent()) {
     quantized.normal.resize(topology.num_edges());
@@ -159,28 +230,39 @@ Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const u
   const LevelSteps finer = mesh.num_levels + 1 < last_level() ? header->steps[mesh.num_levels + 1] : LevelSteps();
   coding.normal_continues = finer.normal_step > 0;
   coding.tangential_continues = finer.tangential_step > 0;
-  RangeDecoder decoder(payload);
-  CodeLevel(topology, steps, &coding, &quantized, &decoder);
+  CodeLevel(topology, steps, &coding, &quantized, decoder);
   SynthesizeLevel(topology, *stencils, steps, quantized, &mesh.positions);
   const auto first_new = mesh.positions.begin() + topology.num_vertices;
-  if (!std::all_of(first_new, mesh.positions.end(), IsFinite)) {
-    mesh.positions.erase(first_new, mesh.positions.end());
-    return InvalidData("level " + std::to_string(mesh.num_levels + 1) + " has positions that are not finite");
-  }
-  ++mesh.num_levels;
-  ++num_states;
-  return Status();
+  if (std::all_of(first_new, mesh.positions.end(), IsFinite)) return Status();
+  return InvalidData("level " + std::to_string(mesh.num_levels + 1) + " has positions that are not finite");
+}
+
+void ProgressiveDecoder::State::Start(BaseMesh given, uint16_t checksum, const RefinementOptions& wanted) {
+  TriangleMesh surface = given.ToMesh();
+  mesh.num_base_vertices = static_cast<uint32_t>(given.lattice.size());
+  mesh.base_triangles = std::move(surface.triangles);
+  mesh.positions = std::move(surface.positions);
+  base = std::move(given);
+  base_checksum = checksum;
+  options = wanted;
 }
 
 StatusOr<ProgressiveDecoder> ProgressiveDecoder::Create(const BaseMesh& base, const RefinementOptions& options) {
   LACERTA_RETURN_IF_ERROR(CheckBase(base, options.limits));
   auto state = std::make_unique<State>();
-  TriangleMesh mesh = base.ToMesh();
-  state->mesh.num_base_vertices = static_cast<uint32_t>(base.lattice.size());
-  state->mesh.base_triangles = std::move(mesh.triangles);
-  state->mesh.positions = std::move(mesh.positions);
-  state->base = base;
-  state->options = options;
+  state->Start(base, BaseChecksum(base), options);
+  return ProgressiveDecoder(std::move(state));
+}
+
+StatusOr<ProgressiveDecoder> ProgressiveDecoder::Create(const AttributedBase& base, const RefinementOptions& options) {
+  LACERTA_RETURN_IF_ERROR(CheckBase(base.mesh, options.limits));
+  LACERTA_ASSIGN_OR_RETURN(GluedBase glued, GlueBase(base));
+  auto state = std::make_unique<State>();
+  state->is_attributed = true;
+  for (const BaseAttribute& a : base.attributes) state->precision.push_back(a.precision);
+  state->base_groups = std::move(glued.groups);
+  state->attributes = std::move(glued.attributes);
+  state->Start(std::move(glued.mesh), BaseChecksum(base), options);
   return ProgressiveDecoder(std::move(state));
 }
 
@@ -231,12 +313,32 @@ std::vector<Triangle> ProgressiveDecoder::Triangles() const {
                             s.mesh.base_triangles, s.mesh.tags);
 }
 
+const std::vector<LevelAttribute>& ProgressiveDecoder::attributes() const { return state_->attributes; }
+const std::vector<uint32_t>& ProgressiveDecoder::base_groups() const { return state_->base_groups; }
+
+std::vector<Triangle> ProgressiveDecoder::Corners(size_t attribute) const {
+  const State& s = *state_;
+  const LevelAttribute& a = s.attributes[attribute];
+  if (s.mesh.num_levels == 0) return a.base_corners;
+  const size_t num_split = (a.base_corners.size() - s.num_still) << 2 * s.mesh.num_levels;
+  return WithStillTriangles(s.attribute_decoders[attribute].Corners(num_split), a.base_corners, s.mesh.tags);
+}
+
+std::vector<uint32_t> ProgressiveDecoder::Groups() const { return GroupsAtLevel(state_->base_groups, state_->mesh.tags, state_->mesh.num_levels); }
+
 SemiRegularMesh ProgressiveDecoder::TakeMesh() && { return std::move(state_->mesh); }
+
+AttributedSemiRegularMesh ProgressiveDecoder::TakeAttributed() && {
+  return {std::move(state_->mesh), std::move(state_->base_groups), std::move(state_->attributes)};
+}
 
 StatusOr<RefinementInfo> ReadRefinementInfo(Span<const uint8_t> refinement) {
   LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadHeader> read, ReadRefinementHeader(refinement));
   if (!read) return InvalidData("the refinement header is incomplete: " + std::to_string(refinement.size()) + " bytes");
-  return RefinementInfo{static_cast<int>(read->header.steps.size()), read->header.base_step, read->header.has_layers};
+  const RefinementHeader& header = read->header;
+  RefinementInfo info{static_cast<int>(header.steps.size()), header.base_step, header.has_layers, header.is_attributed, {}};
+  for (const AttributeHeader& a : header.attributes) info.attributes.push_back(a.precision);
+  return info;
 }
 
 StatusOr<RefinementResult> DecodeRefinement(const BaseMesh& base, Span<const uint8_t> refinement,

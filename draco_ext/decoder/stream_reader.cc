@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/crc32.h"
+#include "common/octahedral.h"
 #include "common/step_forecast.h"
 #include "decoder/byte_cursor.h"
 
@@ -52,6 +53,50 @@ const char* ReadSteps(int num_levels, ByteCursor* cursor, std::vector<LevelSteps
   return "a level in the refinement header has flags, but no coefficients";
 }
 
+// Reads the attributes. Returns what is wrong with them, or null, as ReadSteps does.
+const char* ReadAttributes(size_t num_levels, ByteCursor* cursor, std::vector<AttributeHeader>* attributes) {
+  const uint32_t count = cursor->Varint();
+  uint64_t num_components = 0;
+  for (uint32_t i = 0; i < count && !cursor->at_end(); ++i) {
+    AttributeHeader a;
+    const uint8_t kind = cursor->Byte(), prediction = cursor->Byte();
+    a.precision.components = cursor->Varint();
+    num_components += a.precision.components;
+    const Span<const uint8_t> name = cursor->Take(cursor->Byte());
+    a.precision.name.assign(name.begin(), name.end());
+    if (kind > kLastAttributeKind) return "an attribute in the refinement header is of unknown kind";
+    a.precision.kind = static_cast<AttributeKind>(kind);
+    const bool is_normal = a.precision.kind == AttributeKind::kNormal;
+    if (!HasLegalComponents(a.precision) || num_components > kMostComponents)
+      return "an attribute in the refinement header has a number of components that is not legal";
+    if (prediction > static_cast<uint8_t>(AttributePrediction::kGeometry) ||
+        (!is_normal && prediction == static_cast<uint8_t>(AttributePrediction::kGeometry)))
+      return "an attribute in the refinement header has an unknown prediction";
+    a.prediction = static_cast<AttributePrediction>(prediction);
+    if (is_normal) {
+      a.precision.octahedral_bits = cursor->Byte();
+      if (a.precision.octahedral_bits < kLeastOctahedralBits || a.precision.octahedral_bits > kMostOctahedralBits)
+        return "the normals in the refinement header have a number of bits that is not legal";
+    } else {
+      const uint16_t step = cursor->Word16();
+      if (!IsStepBits(step)) return "the base step of an attribute in the refinement header is not a positive number";
+      a.precision.step = StepFromBits(step);
+    }
+    const uint32_t coded_levels = cursor->Varint();
+    if (coded_levels >> num_levels != 0) return "an attribute in the refinement header has more levels than the mesh";
+    a.steps.assign(num_levels, 0.0f);
+    int64_t bits = kFirstAttributeStepBits;
+    for (size_t level = 0; level < num_levels; ++level) {
+      if ((coded_levels >> level & 1) == 0) continue;
+      bits += cursor->SignedVarint();
+      if (!IsStepBits(bits)) return "a step of an attribute in the refinement header is not a positive number";
+      a.steps[level] = StepFromBits(static_cast<uint16_t>(bits));
+    }
+    attributes->push_back(std::move(a));
+  }
+  return nullptr;
+}
+
 // A length, a checksum and so many bytes. what: as in SegmentChecksum; level: for messages.
 StatusOr<std::optional<ReadSegment>> ReadChecked(Span<const uint8_t> bytes, int what, int level) {
   using Result = std::optional<ReadSegment>;
@@ -88,8 +133,6 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   const int levels_and_flags = cursor.Byte();
   if (cursor.at_end()) return Result();
   const int num_levels = levels_and_flags & 0x0f;
-  if ((levels_and_flags & kUnknownFlags) != 0)
-    return Unsupported("the refinement header has flags that this decoder does not know; a newer Lacerta may read it");
   if (num_levels < 1 || num_levels > kMaxLevels) {
     return InvalidData(std::to_string(num_levels) + " refinement levels; 1 to " + std::to_string(kMaxLevels) +
                        " are legal");
@@ -105,6 +148,11 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
     return InvalidData("the refinement header is damaged (" + std::to_string(tags_size) + " bytes of tags)");
   }
   const Span<const uint8_t> tags = cursor.Take(tags_size);
+  header.is_attributed = (levels_and_flags & kHasAttributes) != 0;
+  if (header.is_attributed && header.has_layers) return Unsupported("a refinement with quality layers cannot have attributes");
+  const char* const fault_of_attributes =
+      header.is_attributed ? ReadAttributes(static_cast<size_t>(num_levels), &cursor, &header.attributes) : nullptr;
+  if (fault_of_attributes != nullptr && !cursor.at_end()) return InvalidData(fault_of_attributes);
   const size_t checked_size = cursor.position();
   const uint16_t checksum = cursor.Word16();
   if (cursor.at_end()) return Result();

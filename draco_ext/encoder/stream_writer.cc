@@ -1,9 +1,11 @@
 #include "encoder/stream_writer.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "common/attribute_coding.h"
 #include "common/base_tags_coding.h"
 #include "common/coefficient_coding.h"
 #include "common/crc32.h"
@@ -64,17 +66,43 @@ void PutSteps(const std::vector<LevelSteps>& steps, Bytes* bytes) {
   bytes->insert(bytes->end(), fields.begin(), fields.end());
 }
 
-Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps, const Bytes& tags, BaseStepField base_step, bool has_layers) {
+void PutAttributes(const std::vector<CodedAttribute>& attributes, Bytes* bytes) {
+  PutVarint(attributes.size(), bytes);
+  for (const CodedAttribute& attribute : attributes) {
+    const auto& [precision, prediction, steps] = attribute.header;
+    bytes->push_back(static_cast<uint8_t>(precision.kind));
+    bytes->push_back(static_cast<uint8_t>(prediction));
+    PutVarint(precision.components, bytes);
+    bytes->push_back(static_cast<uint8_t>(precision.name.size()));
+    bytes->insert(bytes->end(), precision.name.begin(), precision.name.end());
+    if (precision.kind == AttributeKind::kNormal) {
+      bytes->push_back(static_cast<uint8_t>(precision.octahedral_bits));
+    } else {
+      PutWord16(StepToBits(precision.step), bytes);
+    }
+    uint32_t coded_levels = 0;
+    for (size_t i = 0; i < steps.size(); ++i) coded_levels |= static_cast<uint32_t>(steps[i] > 0) << i;
+    PutVarint(coded_levels, bytes);
+    int before = kFirstAttributeStepBits;
+    for (const float step : steps) {
+      if (step > 0) PutSignedVarint(StepToBits(step) - std::exchange(before, StepToBits(step)), bytes);
+    }
+  }
+}
+
+Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps, const Bytes& tags, BaseStepField base_step, bool has_layers,
+                  const WrittenAttributes* attributes) {
   Bytes bytes(kRefinementMagic.begin(), kRefinementMagic.end());
   bytes.push_back(kRefinementVersion);
   const bool has_base_step = base_step == BaseStepField::kWritten;
   bytes.push_back(static_cast<uint8_t>(steps.size() | (tags.empty() ? 0 : kHasTags) | (has_base_step ? kHasBaseStep : 0) |
-                                       (has_layers ? kHasLayers : 0)));
+                                       (has_layers ? kHasLayers : 0) | (attributes != nullptr ? kHasAttributes : 0)));
   if (has_base_step) PutWord16(StepToBits(base.step), &bytes);
-  PutWord16(BaseChecksum(base), &bytes);
+  PutWord16(attributes != nullptr ? attributes->base_checksum : BaseChecksum(base), &bytes);
   PutSteps(steps, &bytes);
   if (!tags.empty()) PutVarint(tags.size(), &bytes);
   bytes.insert(bytes.end(), tags.begin(), tags.end());
+  if (attributes != nullptr) PutAttributes(attributes->coded, &bytes);
   Crc32 crc;
   crc.Add(bytes);
   PutWord16(crc.low16(), &bytes);
@@ -121,9 +149,37 @@ Status CheckSet(const char* name, int level, const std::vector<int32_t>& set, si
                          (step > 0 ? "; take a larger step" : " but no step"));
 }
 
+Status CheckAttribute(const CodedAttribute& attribute, AttributeWedges wedges, size_t num_levels) {
+  const auto& [precision, prediction, steps] = attribute.header;
+  const std::string where = "attribute " + precision.name;
+  if (!HasLegalComponents(precision) || precision.name.size() > kMostNameBytes) return InvalidArgument(where + " has illegal components or too long a name");
+  if (prediction == AttributePrediction::kGeometry && precision.kind != AttributeKind::kNormal) return InvalidArgument(where + " has no normals to take from the geometry");
+  const bool is_normal = precision.kind == AttributeKind::kNormal;
+  if (!is_normal && (!(precision.step > 0) || RoundStep(precision.step) != precision.step)) return InvalidArgument(where + ": the base step is not rounded");
+  if (steps.size() != num_levels || attribute.residuals.size() != num_levels) return InvalidArgument(where + " has not the levels of the surface");
+  for (size_t i = 0; i < num_levels; ++i) {
+    if (i > 0) RefineWedges(&wedges);
+    const size_t wanted = steps[i] > 0 ? size_t{CodedComponents(precision)} * wedges.topology.num_edges() : attribute.residuals[i].size();
+    LACERTA_RETURN_IF_ERROR(CheckSet(where.c_str(), static_cast<int>(i) + 1, attribute.residuals[i], wanted, steps[i], 0));
+  }
+  return Status();
+}
+
+Status CheckAttributes(const WrittenAttributes& attributes, size_t num_levels) {
+  if (attributes.coded.size() != attributes.wedges.size()) return InvalidArgument("numbers of attributes and wedge meshes differ");
+  uint64_t num_components = 0;
+  for (size_t i = 0; i < attributes.coded.size(); ++i) {
+    num_components += attributes.coded[i].header.precision.components;
+    LACERTA_RETURN_IF_ERROR(CheckAttribute(attributes.coded[i], attributes.wedges[i], num_levels));
+  }
+  if (num_components <= kMostComponents) return Status();
+  return InvalidArgument("the attributes have " + std::to_string(num_components) + " components together; " + std::to_string(kMostComponents) + " are possible");
+}
+
 // The header, where all that goes into the stream keeps to the rules of WriteRefinement; no byte where there is no level.
 StatusOr<Bytes> CheckAndWriteHeader(const BaseMesh& base, Span<const Topology> topologies, const std::vector<LevelSteps>& steps,
-                                    const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step, bool has_layers) {
+                                    const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step, bool has_layers,
+                                    const WrittenAttributes* attributes) {
   if (topologies.size() != levels.size() || steps.size() != levels.size()) {
     return InvalidArgument("numbers of topologies, steps and levels differ");
   }
@@ -133,8 +189,38 @@ StatusOr<Bytes> CheckAndWriteHeader(const BaseMesh& base, Span<const Topology> t
   for (size_t i = 0; i < levels.size(); ++i) {
     LACERTA_RETURN_IF_ERROR(CheckCoefficients(static_cast<int>(i) + 1, topologies[i], steps[i], levels[i]));
   }
-  return WriteHeader(base, steps, coded_tags, base_step, has_layers);
+  if (attributes != nullptr) LACERTA_RETURN_IF_ERROR(CheckAttributes(*attributes, levels.size()));
+  return WriteHeader(base, steps, coded_tags, base_step, has_layers, attributes);
 }
+
+// Codes the attributes level by level.
+class AttributeWriter {
+ public:
+  explicit AttributeWriter(const WrittenAttributes& attributes) : attributes_(attributes.coded), wedges_(attributes.wedges) {
+    for (const CodedAttribute& a : attributes_) states_.emplace_back(CodedComponents(a.header.precision));
+  }
+
+  // Codes the next level; returns whether there was anything to code.
+  bool WriteLevel(RangeEncoder* encoder) {
+    bool any = false;
+    for (size_t a = 0; a < attributes_.size(); ++a) {
+      const std::vector<float>& steps = attributes_[a].header.steps;
+      if (level_ > 0) RefineWedges(&wedges_[a]);
+      std::vector<int32_t> residuals = attributes_[a].residuals[level_];
+      const bool continues = level_ + 1 < steps.size() && steps[level_ + 1] > 0;
+      CodeAttributeLevel(wedges_[a].topology, steps[level_], continues, &states_[a], &residuals, encoder);
+      any = any || steps[level_] > 0;
+    }
+    ++level_;
+    return any;
+  }
+
+ private:
+  const std::vector<CodedAttribute>& attributes_;
+  std::vector<AttributeWedges> wedges_;
+  std::vector<AttributeCodingState> states_;
+  size_t level_ = 0;
+};
 
 }  // namespace
 
@@ -172,21 +258,25 @@ StatusOr<std::vector<Topology>> BuildTopologies(const BaseMesh& base, int num_le
 
 StatusOr<Bytes> WriteLayeredHeader(const BaseMesh& base, Span<const Topology> topologies, const std::vector<LevelSteps>& steps,
                                    const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step) {
-  return CheckAndWriteHeader(base, topologies, steps, levels, tags, base_step, true);
+  return CheckAndWriteHeader(base, topologies, steps, levels, tags, base_step, true, nullptr);
 }
 
 StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topology> topologies,
                                           const std::vector<LevelSteps>& steps,
-                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step) {
+                                          const std::vector<QuantizedLevel>& levels, const BaseTags& tags, BaseStepField base_step,
+                                          const WrittenAttributes* attributes) {
   RefinementBytes result;
-  LACERTA_ASSIGN_OR_RETURN(result.bytes, CheckAndWriteHeader(base, topologies, steps, levels, tags, base_step, false));
+  LACERTA_ASSIGN_OR_RETURN(result.bytes, CheckAndWriteHeader(base, topologies, steps, levels, tags, base_step, false, attributes));
   size_t part_begin = 0;
   CodingState state;
+  std::optional<AttributeWriter> writer;
+  if (attributes != nullptr) writer.emplace(*attributes);
   for (size_t i = 0; i < levels.size(); ++i) {
     RangeEncoder encoder;
     QuantizedLevel coefficients = levels[i];
     CodeLevel(topologies[i], steps[i], &state, &coefficients, &encoder);
-    if (!steps[i].is_silent()) PutSegment(static_cast<int>(i) + 1, encoder.Finish(), &result.bytes);
+    const bool has_residuals = writer && writer->WriteLevel(&encoder);
+    if (!steps[i].is_silent() || has_residuals) PutSegment(static_cast<int>(i) + 1, encoder.Finish(), &result.bytes);
     result.part_sizes.push_back(result.bytes.size() - part_begin);
     part_begin = result.bytes.size();
   }

@@ -105,14 +105,15 @@ Decimator::Decimator(const TriangleMesh& mesh, const Topology& topology, const D
     }
   }
   for (uint32_t e = 0; e < topology.num_edges(); ++e) {
-    if (!topology.is_border(e)) continue;
+    const bool is_border = topology.is_border(e);
+    if (!is_border && (options.drawn_curves.empty() || options.drawn_curves[e] == 0)) continue;
     const auto& [a, b] = topology.edges[e];
-    const Vec3d& opposite = positions_[OppositeVertex(topology, topology.edge_faces[e][0], e)];
-    const Quadric q = BorderQuadric(positions_[a], positions_[b], opposite);
-    for (const uint32_t v : {a, b}) {
-      quadrics_[v] += q;
-      on_border_[v] = 1;
+    for (const uint32_t f : topology.edge_faces[e]) {
+      if (f == kNone) continue;
+      const Quadric q = BorderQuadric(positions_[a], positions_[b], positions_[OppositeVertex(topology, f, e)]);
+      for (const uint32_t v : {a, b}) quadrics_[v] += q;
     }
+    if (is_border) on_border_[a] = on_border_[b] = 1;
   }
   for (uint32_t v = 0; v < normals_.size(); ++v) {
     normals_[v] = topology.role[v] == CurveRole::kSmooth ? Normalized(normals_[v]) : Vec3d{};

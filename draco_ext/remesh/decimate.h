@@ -4,6 +4,7 @@
 #define LACERTA_REMESH_DECIMATE_H_
 
 #include <cstdint>
+#include <vector>
 
 #include "common/subdivision.h"
 #include "lacerta/mesh.h"
@@ -16,6 +17,8 @@ struct DecimateOptions {
   int max_valence = 12;            // of a base vertex, at most 64; one that the input has more of may stay
   double min_normal_cosine = 0.2;  // between a new triangle and the one it replaces
   double aspect_power = 1;         // of the worst aspect ratio, in the cost of a collapse: 2 makes for rounder triangles
+  // #E of the topology, or empty. 1: a curve where the shape shows none, kept in place like a border
+  std::vector<uint8_t> drawn_curves = {};
 };
 
 // mesh: oriented manifold, with or without border, one fan per vertex. topology: its own, with its curves; corners

@@ -7,7 +7,7 @@
 namespace lacerta {
 
 NormalMesh Pierce(const InputSurface& surface, const BaseDomain& domain, const std::vector<Vec3f>& base_positions,
-                  const PiercingOptions& options) {
+                  const PiercingOptions& options, std::vector<DomainPoint>* parameters) {
   NormalMesh result;
   result.mesh.base_triangles = domain.triangles();
   result.mesh.num_base_vertices = domain.num_vertices();
@@ -38,6 +38,10 @@ NormalMesh Pierce(const InputSurface& surface, const BaseDomain& domain, const s
     if (level + 1 < options.num_levels) topology = Refine(topology);
   }
   for (const Site& site : sites) result.surface_normals.push_back(site.normal);
+  if (parameters != nullptr) {
+    parameters->clear();
+    for (const Site& site : sites) parameters->push_back(site.parameter);
+  }
   return result;
 }
 

@@ -28,9 +28,10 @@ struct PiercingOptions {
 // the midpoints of those that fail fall back. The parametric triangles never fold, so the mesh keeps the input's topology; where
 // they are turned over in space nonetheless, their midpoints move in the parametrization until that is undone or no move helps.
 //
-// base_positions: #V0, of the base as the decoder will have it (they need not lie on the input).
+// base_positions: #V0, of the base as the decoder will have it (they need not lie on the input). parameters: where not null, becomes the
+// points of the domain at which the vertices of the finest level stand, #V; face kNone for isolated base vertices.
 NormalMesh Pierce(const InputSurface& surface, const BaseDomain& domain, const std::vector<Vec3f>& base_positions,
-                  const PiercingOptions& options);
+                  const PiercingOptions& options, std::vector<DomainPoint>* parameters = nullptr);
 
 }  // namespace lacerta
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "remesh/corners.h"
 #include "remesh/features.h"
 
 namespace lacerta {
@@ -13,12 +14,14 @@ namespace {
 
 // The triangles that `belongs` chooses with the vertices that they use, in order; source_vertex: of the vertices that are taken.
 template <typename Belongs>
-TriangleMesh Part(const ManifoldMesh& whole, const Belongs& belongs, std::vector<uint32_t>* source_vertex) {
+TriangleMesh Part(const SurfaceToSplit& whole, const Belongs& belongs, std::vector<uint32_t>* source_vertex,
+                  std::vector<uint32_t>* source_face) {
   std::vector<uint8_t> used(whole.mesh.positions.size(), 0);
   TriangleMesh part;
   for (uint32_t f = 0; f < whole.mesh.triangles.size(); ++f) {
     if (!belongs(f)) continue;
     part.triangles.push_back(whole.mesh.triangles[f]);
+    source_face->push_back(f);
     for (const uint32_t v : part.triangles.back()) used[v] = 1;
   }
   std::vector<uint32_t> number(used.size(), kNone);
@@ -53,20 +56,35 @@ void DropFewCreases(const TriangleMesh& mesh, const Topology& topology, const st
   }
 }
 
-Topology TopologyWithFeatures(const TriangleMesh& mesh, const std::vector<uint32_t>& component, size_t num_components) {
+// Finds the curves of parts->refined: what its shape shows, and what is marked.
+void FindCurves(const SurfaceToSplit& whole, SurfaceParts* parts) {
+  const TriangleMesh& mesh = parts->refined;
   Topology topology = BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles).value();
   Features features = DetectFeatures(mesh, topology);
-  DropFewCreases(mesh, topology, component, num_components, &features.crease);
+  std::vector<uint32_t> component;
+  for (const uint32_t f : parts->refined_faces) component.push_back(whole.component[f]);
+  DropFewCreases(mesh, topology, component, whole.refine.size(), &features.crease);
+  parts->shape_creases = features.crease;
   BaseTags tags;
   tags.crease = std::move(features.crease);
   tags.corner = std::move(features.corner);
-  return BuildTopology(topology.num_vertices, mesh.triangles, tags).value();
+  if (!whole.curves.empty()) {
+    for (uint32_t f = 0; f < topology.num_faces(); ++f) {
+      for (size_t k = 0; k < 3; ++k) {
+        const uint32_t edge = topology.face_edges[f][k];
+        if ((whole.curves[parts->refined_faces[f]] >> k & 1) != 0 && !topology.is_border(edge)) tags.crease[edge] = 1;
+      }
+    }
+    constexpr double kCornerTurn = 45 * 3.14159265358979323846 / 180;
+    tags.corner = FindCorners(mesh, topology, tags.crease, kCornerTurn);
+  }
+  parts->topology = BuildTopology(topology.num_vertices, mesh.triangles, tags).value();
 }
 
 // Makes copies of a vertex corners, but for those inside of double sheets, where all around have copies: they are as free as any
 // vertex of a sheet alone.
-void PinCopies(size_t num_sources, SurfaceParts* parts) {
-  std::vector<uint32_t> num_copies(num_sources, 0);
+void PinCopies(SurfaceParts* parts) {
+  std::vector<uint32_t> num_copies(1 + *std::max_element(parts->source_vertex.begin(), parts->source_vertex.end()), 0);
   for (const uint32_t v : parts->source_vertex) ++num_copies[v];
   const auto is_copy = [&](uint32_t v) { return num_copies[parts->source_vertex[v]] > 1; };
   Topology& topology = parts->topology;
@@ -102,10 +120,12 @@ BorderArc FollowBorder(const Topology& topology, const std::vector<std::array<ui
   return {corner, v, inside.empty() ? kNone : inside[inside.size() / 2]};
 }
 
+}  // namespace
+
 // Borders that share only their ends (two holes that touch at two points) are different curves. A base that had a single edge for each
 // would join them, as edges are joined by the places of their ends: a corner in the middle of all but one keeps them apart.
-void PinBordersWithCommonEnds(SurfaceParts* parts) {
-  Topology& topology = parts->topology;
+void PinBordersWithCommonEnds(const std::vector<uint32_t>& source_vertex, Topology* with_corners) {
+  Topology& topology = *with_corners;
   std::vector<std::array<uint32_t, 2>> edges_at(topology.num_vertices, {kNone, kNone});
   for (uint32_t e = 0; e < topology.num_edges(); ++e) {
     if (!topology.is_border(e)) continue;
@@ -118,7 +138,7 @@ void PinBordersWithCommonEnds(SurfaceParts* parts) {
     for (const uint32_t e : edges_at[v]) {
       if (e == kNone || seen[e]) continue;
       const BorderArc arc = FollowBorder(topology, edges_at, v, e, &seen);
-      arcs[std::minmax(parts->source_vertex[v], parts->source_vertex[arc.last])].push_back(arc);
+      arcs[std::minmax(source_vertex[v], source_vertex[arc.last])].push_back(arc);
     }
   }
   for (const auto& [ends, between] : arcs) {
@@ -132,28 +152,26 @@ void PinBordersWithCommonEnds(SurfaceParts* parts) {
   }
 }
 
-}  // namespace
+SurfaceParts SplitSurface(const SurfaceToSplit& whole) {
+  const auto is_refined = [&](uint32_t f) { return whole.refine[whole.component[f]] != 0; };
+  SurfaceParts parts;
+  for (const uint8_t refine : whole.refine) ++(refine != 0 ? parts.refined_components : parts.still_components);
+  parts.refined = Part(whole, is_refined, &parts.source_vertex, &parts.refined_faces);
+  std::vector<uint32_t> still_source;
+  parts.still = Part(whole, [&](uint32_t f) { return !is_refined(f); }, &still_source, &parts.still_faces);
+  if (parts.refined.triangles.empty()) return parts;
+  FindCurves(whole, &parts);
+  PinCopies(&parts);
+  PinBordersWithCommonEnds(parts.source_vertex, &parts.topology);
+  return parts;
+}
 
 SurfaceParts SplitSurface(const TriangleMesh& cleaned, const SurfacePartsOptions& options) {
   const ManifoldMesh whole = MakeManifold(cleaned);
-  const auto is_refined = [&](uint32_t f) { return whole.components[whole.component[f]].faces >= options.fewest_faces; };
-  SurfaceParts parts;
+  SurfaceToSplit to_split{whole.mesh, whole.source_vertex, whole.component, {}, {}};
+  for (const ComponentTopology& c : whole.components) to_split.refine.push_back(c.faces >= options.fewest_faces);
+  SurfaceParts parts = SplitSurface(to_split);
   parts.report = whole.report;
-  for (const ComponentTopology& c : whole.components) {
-    ++(c.faces >= options.fewest_faces ? parts.refined_components : parts.still_components);
-  }
-  parts.refined = Part(whole, is_refined, &parts.source_vertex);
-  std::vector<uint32_t> still_source;
-  parts.still = Part(whole, [&](uint32_t f) { return !is_refined(f); }, &still_source);
-  if (parts.refined.triangles.empty()) return parts;
-
-  std::vector<uint32_t> component;
-  for (uint32_t f = 0; f < whole.component.size(); ++f) {
-    if (is_refined(f)) component.push_back(whole.component[f]);
-  }
-  parts.topology = TopologyWithFeatures(parts.refined, component, whole.components.size());
-  PinCopies(cleaned.positions.size(), &parts);
-  PinBordersWithCommonEnds(&parts);
   return parts;
 }
 

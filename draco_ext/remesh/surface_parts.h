@@ -19,6 +19,8 @@ struct SurfaceParts {
   // both ends and nothing else, so that no base takes them for one.
   Topology topology;
   std::vector<uint32_t> source_vertex;  // #V of refined, the vertex of the cleaned input: equal for the copies of a cut
+  std::vector<uint32_t> refined_faces, still_faces;  // #F of each, the face of the manifold
+  std::vector<uint8_t> shape_creases;  // #E of the topology, 1 for those curves that the shape itself shows; none of the border
   // All other components, as they are; may be empty.
   TriangleMesh still;
   uint64_t refined_components = 0, still_components = 0;
@@ -28,6 +30,20 @@ struct SurfaceParts {
 struct SurfacePartsOptions {
   uint32_t fewest_faces = 500;  // of a component that is worth remeshing
 };
+
+// An oriented manifold, one fan per vertex, of several components and what is to become of them.
+struct SurfaceToSplit {
+  const TriangleMesh& mesh;
+  const std::vector<uint32_t>& source_vertex;  // #V
+  const std::vector<uint32_t>& component;      // #F, < #C
+  std::vector<uint8_t> refine;                 // #C, 1: worth remeshing
+  std::vector<uint8_t> curves;                 // #F, bit k: the edge across corner k is a curve, whatever the shape; or empty
+};
+SurfaceParts SplitSurface(const SurfaceToSplit& whole);
+
+// Makes corners of the middles of borders that share both ends and nothing else, all but one (see SurfaceParts::topology). Where corners
+// were added since, others may have to be.
+void PinBordersWithCommonEnds(const std::vector<uint32_t>& source_vertex, Topology* topology);
 
 // cleaned: any mesh that Clean returned.
 SurfaceParts SplitSurface(const TriangleMesh& cleaned, const SurfacePartsOptions& options = {});

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 #include "geometry/equal_rows.h"
 #include "remesh/edge_corners.h"
-#include "remesh/manifold.h"
 
 namespace lacerta {
 namespace {
@@ -105,12 +105,34 @@ WedgeMesh MakeWedgeMesh(const AttributedMesh& input) {
   ManifoldMesh manifold = MakeManifold(cleaned);
   result.mesh = std::move(manifold.mesh);
   result.source_vertex = std::move(manifold.source_vertex);
+  result.component = std::move(manifold.component);
+  result.components = std::move(manifold.components);
   for (size_t f = 0; f < cleaned.triangles.size(); ++f) {
     result.flipped.push_back(result.source_vertex[result.mesh.triangles[f][1]] != cleaned.triangles[f][1]);
   }
   for (const MeshAttribute& attribute : input.attributes) result.attributes.push_back(MakeNodes(attribute, result));
   FindCurves(input, &result);
   return result;
+}
+
+AttributedMesh TakeFaces(const AttributedMesh& input, const WedgeMesh& wedges, TriangleMesh surface, const std::vector<uint32_t>& faces) {
+  AttributedMesh part;
+  part.surface = std::move(surface);
+  if (!input.groups.empty()) {
+    for (const uint32_t f : faces) part.groups.push_back(input.groups[wedges.source_face[f]]);
+  }
+  for (const MeshAttribute& attribute : input.attributes) {
+    MeshAttribute& out = part.attributes.emplace_back(attribute);
+    out.corners.clear();
+    for (const uint32_t f : faces) out.corners.push_back(attribute.corners[wedges.source_face[f]]);
+  }
+  return part;
+}
+
+AttributedMesh TakeFaces(const AttributedMesh& input, const WedgeMesh& wedges) {
+  std::vector<uint32_t> faces(wedges.source_face.size());
+  std::iota(faces.begin(), faces.end(), 0u);
+  return TakeFaces(input, wedges, wedges.mesh, faces);
 }
 
 }  // namespace lacerta

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lacerta/attributed_mesh.h"
+#include "remesh/manifold.h"
 
 namespace lacerta {
 
@@ -29,6 +30,8 @@ struct WedgeMesh {
   std::vector<uint32_t> source_vertex;  // #V, of the input surface
   std::vector<uint32_t> source_face;    // #F, of the input
   std::vector<uint8_t> flipped;         // #F, 1: corners 1 and 2 changed places
+  std::vector<uint32_t> component;      // #F
+  std::vector<ComponentTopology> components;
   std::vector<uint8_t> curve_edges;     // #F, bit k: the edge across corner k is on a curve
   std::vector<VertexFreedom> freedom;   // #V
   std::vector<AttributeNodes> attributes;
@@ -39,6 +42,12 @@ struct WedgeMesh {
 // input: one that CheckAttributedMesh accepts. Triangles with a repeated vertex are left out, and of those of a group that have the same
 // vertices and orientation all but the first. O(n log n).
 WedgeMesh MakeWedgeMesh(const AttributedMesh& input);
+
+// A part of the wedge mesh of `input` with groups and attribute values: `surface`, whose triangles are the given ones of the wedge mesh.
+// No face may be flipped.
+AttributedMesh TakeFaces(const AttributedMesh& input, const WedgeMesh& wedges, TriangleMesh surface, const std::vector<uint32_t>& faces);
+// All of it.
+AttributedMesh TakeFaces(const AttributedMesh& input, const WedgeMesh& wedges);
 
 }  // namespace lacerta
 

@@ -90,4 +90,45 @@ VertexSoup TexturedBox(int n) {
   return soup;
 }
 
+std::vector<VertexSoup> HalvedTorus(int around, int tube) {
+  std::vector<VertexSoup> halves;
+  for (int half = 0; half < 2; ++half) {
+    VertexSoup& soup = halves.emplace_back(WithTextureAndNormals());
+    const int columns = around / 2;
+    for (int j = 0; j <= tube; ++j) {
+      for (int i = half * columns; i <= (half + 1) * columns; ++i) {
+        const float u = 2 * kPi * static_cast<float>(i % around) / static_cast<float>(around);
+        const float v = 2 * kPi * static_cast<float>(j % tube) / static_cast<float>(tube);
+        const Vec3f normal{std::cos(u) * std::cos(v), std::sin(u) * std::cos(v), std::sin(v)};
+        const Vec3f p = Vec3f{std::cos(u), std::sin(u), 0} + normal * 0.4f;
+        AddVertex(p, static_cast<float>(i) / static_cast<float>(around), static_cast<float>(j) / static_cast<float>(tube), normal, &soup);
+      }
+    }
+    AddSquares(columns, tube, 0, &soup);
+  }
+  return halves;
+}
+
+VertexSoup SlitGrid(int n, float height) {
+  VertexSoup soup = TexturedGrid(n, n, height);
+  const int middle = n / 2;
+  const auto width = static_cast<size_t>(n + 1);
+  for (int i = n / 4 + 1; i < n - n / 4; ++i) {
+    const size_t old = static_cast<size_t>(middle) * width + static_cast<size_t>(i);
+    const auto copy = static_cast<uint32_t>(soup.positions.size());
+    soup.positions.push_back(soup.positions[old]);
+    for (VertexSoup::Attribute& a : soup.attributes) {
+      for (size_t c = 0; c < a.components; ++c) a.values.push_back(a.values[old * a.components + c]);
+    }
+    const float along = 4 * (static_cast<float>(i) / static_cast<float>(n) - 0.25f) - 1;  // -1 to 1
+    soup.attributes[0].values.back() += 0.1f * (1 - along * along);
+    for (size_t f = static_cast<size_t>(2 * n * middle); f < static_cast<size_t>(2 * n * (middle + 1)); ++f) {
+      for (uint32_t& v : soup.triangles[f]) {
+        if (v == old) v = copy;
+      }
+    }
+  }
+  return soup;
+}
+
 }  // namespace lacerta::shapes

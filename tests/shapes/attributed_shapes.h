@@ -2,6 +2,8 @@
 #ifndef LACERTA_TESTS_SHAPES_ATTRIBUTED_SHAPES_H_
 #define LACERTA_TESTS_SHAPES_ATTRIBUTED_SHAPES_H_
 
+#include <vector>
+
 #include "lacerta/attributed_mesh.h"
 
 namespace lacerta::shapes {
@@ -15,6 +17,14 @@ VertexSoup TexturedGrid(int nx, int ny, float height = 0.0f);
 
 // The unit cube, n x n squares a side: each side fills the texture (TEXCOORD_0) and has one NORMAL, so that all edges are seams.
 VertexSoup TexturedBox(int n);
+
+// A torus of radii 1 and 0.4 around the z axis, `around` x `tube` squares, with TEXCOORD_0 = the two angles / 2 pi and NORMAL: the texture
+// is cut once around and once along the tube, the normals are not. Two soups with a border at the angles 0 and pi around the axis.
+std::vector<VertexSoup> HalvedTorus(int around, int tube);
+
+// TexturedGrid with n x n squares, n a multiple of 4, whose texture is slit along y = 1/2 for 1/4 < x < 3/4: above the slit it is moved up,
+// most in the middle, not at all at both ends.
+VertexSoup SlitGrid(int n, float height = 0.0f);
 
 }  // namespace lacerta::shapes
 

@@ -8,8 +8,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "lacerta/attributed_levels.h"
+#include "lacerta/attributed_mesh.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
 
@@ -54,12 +57,25 @@ StatusOr<CompactBase> DecodeCompactBase(Span<const uint8_t> bytes, const DecodeL
 // kInvalidArgument where it has no such level and with kInvalidData where the base is not manifold or its tags do not fit it.
 StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level);
 
+// Where the values of an attribute lie in the base: what a host needs to turn its floats into integers.
+struct AttributeLattice {
+  std::string name;  // as in glTF
+  AttributeKind kind = AttributeKind::kGeneric;
+  uint32_t components = 1;
+  float step = 0.0f;        // values are multiples of it; 0 for normals
+  int octahedral_bits = 0;  // of normals, as in Draco: 2..16; else 0
+};
+
 // What the header of a refinement tells before anything is decoded.
 struct RefinementInfo {
   int num_levels = 0;
   float base_step = 0.0f;  // model units: what BaseMeshFromPositions wants; 0 where only the compact base tells it
   bool has_layers = false;  // levels come in several rounds
+  bool is_attributed = false;  // the refinement wants an AttributedBase (lacerta/attributed_base.h)
+  std::vector<AttributeLattice> attributes;
 };
+
+struct AttributedBase;
 
 // Reads the header at the beginning of the bytes that follow the base section. Fails with kInvalidData where there is
 // no complete and sound header, and with kUnsupported on an unknown version.
@@ -79,6 +95,9 @@ class ProgressiveDecoder {
   // Fails with kInvalidData where a lattice value or the step is out of range, and with kLimitExceeded where the base
   // alone is over the limits.
   static StatusOr<ProgressiveDecoder> Create(const BaseMesh& base, const RefinementOptions& options);
+  // For refinements that carry attributes or groups (RefinementInfo::is_attributed). Fails with kInvalidData, too, where arrays do not
+  // have the shapes that AttributedBase tells, or a glued base is no manifold.
+  static StatusOr<ProgressiveDecoder> Create(const AttributedBase& base, const RefinementOptions& options);
   ProgressiveDecoder(ProgressiveDecoder&&) noexcept;
   ProgressiveDecoder& operator=(ProgressiveDecoder&&) noexcept;
   ~ProgressiveDecoder();
@@ -101,8 +120,16 @@ class ProgressiveDecoder {
 
   // Those of mesh() at level(), as MeshAtLevel gives them, but without making all levels anew.
   std::vector<Triangle> Triangles() const;
+  // Attributes of mesh(), and groups of its base triangles: empty where the base was a BaseMesh.
+  const std::vector<LevelAttribute>& attributes() const;
+  const std::vector<uint32_t>& base_groups() const;
+  // For each of Triangles() the rows of attributes()[attribute].values at its corners, MeshAttribute::kNoValue x 3 without; and its group.
+  std::vector<Triangle> Corners(size_t attribute) const;
+  std::vector<uint32_t> Groups() const;
   // mesh(), out of a decoder that is wanted no more.
   SemiRegularMesh TakeMesh() &&;
+  // The same with attributes() and base_groups().
+  AttributedSemiRegularMesh TakeAttributed() &&;
 
  private:
   struct State;

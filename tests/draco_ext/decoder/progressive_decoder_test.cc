@@ -165,8 +165,8 @@ TEST(ProgressiveDecoderTest, RefusesUnknownFlagsAndLevels) {
   };
   EXPECT_TRUE(with_counts(0x22).ok());
   EXPECT_EQ(with_counts(0x62).code(), StatusCode::kInvalidData);  // layers, of which the checksum does not know
-  EXPECT_EQ(with_counts(0xe2).code(), StatusCode::kUnsupported);
-  EXPECT_EQ(with_counts(0xa2).code(), StatusCode::kUnsupported);
+  EXPECT_EQ(with_counts(0xe2).code(), StatusCode::kUnsupported);  // layers and attributes
+  EXPECT_EQ(with_counts(0xa2).code(), StatusCode::kInvalidData);  // attributes, which are not there
   EXPECT_EQ(with_counts(0x20).code(), StatusCode::kInvalidData);
   EXPECT_EQ(with_counts(0x2d).code(), StatusCode::kInvalidData);
 }

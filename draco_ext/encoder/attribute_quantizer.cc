@@ -1,0 +1,170 @@
+#include "encoder/attribute_quantizer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/attribute_coding.h"
+#include "common/attribute_prediction.h"
+#include "common/coefficient_sets.h"
+#include "encoder/bit_cost.h"
+#include "encoder/quantizer.h"
+
+namespace lacerta {
+namespace {
+
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+Vec3f VectorAt(const std::vector<float>& rows, size_t i, uint32_t components) {
+  return {rows[i * components], rows[i * components + 1], rows[i * components + 2]};
+}
+
+// Residuals of one midpoint, in attribute units or, of normals, as tangents of angles.
+void Difference(const AttributeLattice& p, const AttributeWedges& wedges, const SurfaceLevel& surface, uint32_t edge,
+                const std::vector<float>& predicted, const std::vector<float>& wanted, std::vector<float>* difference) {
+  const size_t row = size_t{wedges.topology.num_vertices} + edge;
+  if (p.kind == AttributeKind::kNormal) {
+    const Vec3f normal = VectorAt(predicted, row, 3), goal = Normalized(VectorAt(wanted, row, 3));
+    const auto axes = NormalAxes(wedges, surface, edge, normal);
+    // On the plane that touches the sphere at the prediction; goals beyond 80 degrees are brought to there.
+    const float height = std::max(Dot(normal, goal), 0.17f);
+    for (int c = 0; c < 2; ++c) (*difference)[static_cast<size_t>(c)] = Dot(axes[static_cast<size_t>(c)], goal) / height;
+    return;
+  }
+  for (uint32_t c = 0; c < difference->size(); ++c) (*difference)[c] = wanted[row * p.components + c] - predicted[row * p.components + c];
+}
+
+// The steps of `count` levels with residuals: larger ones on finer levels, whose errors reach less far.
+std::vector<float> StepsOf(float finest, int count, size_t num_levels) {
+  constexpr float kGrowth = 1.2f;
+  std::vector<float> steps(num_levels, 0.0f);
+  float step = finest;
+  for (int i = count; i-- > 0; step /= kGrowth) steps[static_cast<size_t>(i)] = RoundStep(step);
+  return steps;
+}
+
+}  // namespace
+
+StatusOr<AttributeTarget> MakeAttributeTarget(const AttributeLattice& precision, const std::vector<Triangle>& split_corners,
+                                              std::vector<float> base_values, std::vector<float> values,
+                                              Span<const Topology> topologies, Span<const Vec3f> positions) {
+  AttributeTarget target{precision, {}, std::move(base_values), std::move(values), {}};
+  const auto num_base = static_cast<uint32_t>(target.base_values.size() / precision.components);
+  LACERTA_ASSIGN_OR_RETURN(AttributeWedges wedges, MakeAttributeWedges(split_corners, num_base));
+  for (size_t i = 0; i < topologies.size(); ++i) {
+    if (i > 0) RefineWedges(&wedges);
+    target.wedges.push_back(wedges);
+  }
+  target.weights.assign(target.values.size() / precision.components, 0.0f);
+  if (topologies.empty()) return target;
+  // The finest triangles lie on the surface in the same order as on the wedge mesh.
+  const std::vector<Triangle> rows = RefineTriangles(wedges.topology), surface = RefineTriangles(topologies[topologies.size() - 1]);
+  double whole = 0;
+  for (uint32_t f = 0; f < rows.size(); ++f) {
+    const Triangle& t = surface[4 * wedges.SurfaceFace(f / 4) + f % 4];
+    const double area = Norm(Vec3Cast<double>(Cross(positions[t[1]] - positions[t[0]], positions[t[2]] - positions[t[0]])));
+    whole += 3 * area;
+    for (const uint32_t row : rows[f]) target.weights[row] += static_cast<float>(area);
+  }
+  for (float& w : target.weights) w = whole > 0 ? static_cast<float>(w / whole) : 0.0f;
+  return target;
+}
+
+CodedAttribute QuantizeAttribute(const AttributeTarget& target, const AttributeHeader& header, Span<const Topology> topologies,
+                                 Span<const Vec3f> positions) {
+  CodedAttribute coded{header, std::vector<std::vector<int32_t>>(topologies.size()), target.base_values};
+  std::vector<float> difference(CodedComponents(header.precision));
+  for (size_t i = 0; i < topologies.size(); ++i) {
+    const AttributeWedges& wedges = target.wedges[i];
+    const SurfaceLevel surface{topologies[i], positions};
+    const size_t num_edges = wedges.topology.num_edges();
+    PredictAttribute(header, wedges, surface, &coded.decoded);
+    const float step = header.steps[i];
+    if (!(step > 0)) continue;
+    coded.residuals[i].resize(difference.size() * num_edges);
+    for (uint32_t e = 0; e < num_edges; ++e) {
+      Difference(header.precision, wedges, surface, e, coded.decoded, target.values, &difference);
+      for (size_t c = 0; c < difference.size(); ++c) coded.residuals[i][c * num_edges + e] = RoundToStep(difference[c], step);
+    }
+    AddResiduals(header, wedges, surface, step, coded.residuals[i], &coded.decoded);
+  }
+  return coded;
+}
+
+double AttributeRmsError(const AttributeTarget& target, const std::vector<float>& decoded) {
+  const uint32_t n = target.precision.components;
+  const bool is_direction = target.precision.kind == AttributeKind::kNormal || target.precision.kind == AttributeKind::kTangent;
+  double sum = 0;
+  for (size_t row = 0; row < target.weights.size(); ++row) {
+    if (target.weights[row] == 0) continue;
+    double square = 0;
+    if (is_direction) {
+      const Vec3d a = Vec3Cast<double>(Normalized(VectorAt(decoded, row, n))), b = Vec3Cast<double>(Normalized(VectorAt(target.values, row, n)));
+      const double angle = std::atan2(Norm(Cross(a, b)), Dot(a, b)) * kDegreesPerRadian;
+      square = angle * angle;
+    } else {
+      for (uint32_t c = 0; c < n; ++c) {
+        const double d = static_cast<double>(decoded[row * n + c]) - target.values[row * n + c];
+        square += d * d;
+      }
+    }
+    sum += target.weights[row] * square;
+  }
+  return std::sqrt(sum);
+}
+
+double AttributeBits(const AttributeTarget& target, const CodedAttribute& coded) {
+  AttributeCodingState state(CodedComponents(coded.header.precision));
+  BitMeter meter;
+  const std::vector<float>& steps = coded.header.steps;
+  for (size_t i = 0; i < steps.size(); ++i) {
+    std::vector<int32_t> residuals = coded.residuals[i];
+    const bool continues = i + 1 < steps.size() && steps[i + 1] > 0;
+    CodeAttributeLevel(target.wedges[i].topology, steps[i], continues, &state, &residuals, &meter);
+  }
+  return meter.bits();
+}
+
+CodedAttribute EncodeAttribute(const AttributeTarget& target, double largest_error, Span<const Topology> topologies, Span<const Vec3f> positions) {
+  const bool is_normal = target.precision.kind == AttributeKind::kNormal;
+  const bool is_direction = is_normal || target.precision.kind == AttributeKind::kTangent;
+  const double unit = is_direction ? largest_error / kDegreesPerRadian : largest_error;
+  std::vector<AttributePrediction> predictions = {AttributePrediction::kButterfly, AttributePrediction::kLinear};
+  if (is_normal) predictions.push_back(AttributePrediction::kGeometry);
+  CodedAttribute best, finest;
+  double fewest = std::numeric_limits<double>::infinity(), least_error = fewest;
+  for (const AttributePrediction prediction : predictions) {
+    for (int count = 0; count <= static_cast<int>(topologies.size()); ++count) {
+      // The step is largest at 8 times the error asked for, and comes down until that is met.
+      constexpr int kSteps = 16;
+      int coarse = -1, fine = count == 0 ? 0 : kSteps;  // the error is met at `fine`, or nowhere
+      CodedAttribute met;
+      const auto attempt = [&](int i) {
+        const double step = 8 * unit * std::pow(2.0, -i / 2.0);
+        CodedAttribute coded =
+            QuantizeAttribute(target, {target.precision, prediction, StepsOf(static_cast<float>(step), count, topologies.size())}, topologies, positions);
+        const double error = AttributeRmsError(target, coded.decoded);
+        if (error < least_error) {
+          least_error = error;
+          finest = coded;
+        }
+        const bool is_met = error <= largest_error;
+        if (is_met) met = std::move(coded);
+        return is_met;
+      };
+      if (!attempt(fine)) continue;
+      while (fine - coarse > 1 && count > 0) {
+        const int middle = (coarse + fine) / 2;
+        (attempt(middle) ? fine : coarse) = middle;
+      }
+      const double bits = AttributeBits(target, met);
+      if (bits >= fewest) continue;
+      fewest = bits;
+      best = std::move(met);
+    }
+  }
+  return std::isfinite(fewest) ? best : finest;
+}
+
+}  // namespace lacerta
