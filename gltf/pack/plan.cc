@@ -203,6 +203,46 @@ StatusOr<FamilyCandidate> Simplified(const Context& context, size_t family, cons
   return candidate;
 }
 
+// Whether a stream of the whole family with all attributes is what is stored: it is smaller than `other` and `least` bytes,
+// or levels are wanted whatever they take. Makes it the plan then.
+bool PlanStream(size_t family, const Context& context, const FamilyMeter& meter, const FamilyCandidate* other,
+                uint64_t least, std::vector<PrimitivePlan>* plans) {
+  const PackOptions& options = *context.options;
+  const std::vector<size_t>& members = context.families.families[family].members;
+  const LevelChoice levels = options.encode.levels;
+  if (levels == LevelChoice::kNever || options.fallback != Fallback::kDraco) return false;
+  if (!options.simplify && levels != LevelChoice::kAlways) return false;
+  for (const size_t member : members) {
+    if (!context.sources[member].targets.empty()) return false;
+  }
+  FamilyStreamOptions wanted;
+  const uint64_t json = kDracoJsonBytes * members.size() + kProgressiveJsonBytes;
+  if (levels != LevelChoice::kAlways) {
+    if (least <= json) return false;
+    wanted.bytes_to_beat = least - json;
+    for (const DracoCandidate& member : other == nullptr ? std::vector<DracoCandidate>() : other->members) {
+      wanted.triangles_to_beat += member.encoded.decoded.triangles.size();
+    }
+  }
+  StatusOr<FamilyStream> stream = StreamFamily(meter, wanted);
+  if (!stream.ok()) return false;
+  const auto shared = std::make_shared<const FamilyStream>(std::move(stream).value());
+  for (size_t m = 0; m < members.size(); ++m) {
+    PrimitivePlan& plan = (*plans)[members[m]];
+    PrimitiveReport& report = plan.report;
+    plan.family = shared;
+    plan.group = m;
+    report.storage = PrimitiveStorage::kProgressive;
+    report.reason = "with its attributes in " + std::to_string(shared->part_sizes.size() - 1) + " levels";
+    report.attributes = shared->reports[m];
+    report.error = shared->description.errors.back();
+    report.target_error = ErrorOf(context, family);
+    // The refinement is that of all; the first carries it.
+    report.bytes_after = shared->description.base_lengths[m] + (m == 0 ? shared->bytes.size() - shared->part_sizes[0] : 0);
+  }
+  return true;
+}
+
 // The smallest of what there is, Draco with all vertices and Draco of a simplified surface, for a whole family: one that
 // stayed as it is would come apart from neighbors that are rounded.
 void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan>* plans) {
@@ -230,6 +270,7 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
       simplified_reason = simplified.ok() ? "simplified it would be larger" : "not simplified: " + simplified.status().message();
     }
   }
+  if (!is_stream && PlanStream(family, context, meter, chosen.ok() ? &chosen.value() : nullptr, least, plans)) return;
   for (size_t m = 0; m < members.size(); ++m) {
     PrimitivePlan& plan = (*plans)[members[m]];
     if (!chosen.ok()) {
