@@ -134,7 +134,7 @@ StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, const FamilyStrea
   }
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(original, texel_side));
   const InputSurface surface(parts.refined.surface, parts.topology);
-  const size_t most = std::max<size_t>(parts.refined.surface.triangles.size() / 16, 80);
+  const size_t most = std::max<size_t>(parts.refined.surface.triangles.size() / 8, 80);
   std::optional<AttributedTrial> trial = SmallestTrial({original, meter, parts, surface, history}, family.targets(), coarsest, most);
   if (!trial.has_value()) return Unsupported("no base makes a remesh that is close enough");
   if (options.bytes_to_beat > 0 && trial->stream.size() >= options.bytes_to_beat) {

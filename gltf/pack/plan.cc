@@ -225,7 +225,10 @@ bool PlanStream(size_t family, const Context& context, const FamilyMeter& meter,
     }
   }
   StatusOr<FamilyStream> stream = StreamFamily(meter, wanted);
-  if (!stream.ok()) return false;
+  if (!stream.ok()) {
+    for (const size_t member : members) AddReason("no stream: " + stream.status().message(), &(*plans)[member].report);
+    return false;
+  }
   const auto shared = std::make_shared<const FamilyStream>(std::move(stream).value());
   for (size_t m = 0; m < members.size(); ++m) {
     PrimitivePlan& plan = (*plans)[members[m]];
@@ -266,6 +269,7 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
     StatusOr<FamilyCandidate> simplified = Simplified(context, family, meter, everywhere);
     if (simplified.ok() && simplified.value().bytes < least) {
       chosen = std::move(simplified);
+      least = chosen.value().bytes;
     } else {
       simplified_reason = simplified.ok() ? "simplified it would be larger" : "not simplified: " + simplified.status().message();
     }
