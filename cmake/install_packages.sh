@@ -6,6 +6,7 @@
 #   plot      gnuplot, for the figures in docs/results
 #   fuzz      clang with libFuzzer
 #   validate  Node.js for the glTF validator
+#   batch     GNU parallel and Snakemake, to try the recipes of samples/batch
 #   lint      clang-format and clang-tidy
 # Does nothing, without asking for root, when nothing is missing. Ends with 0 when all packages are there. These lists are
 # the only ones in the repository.
@@ -20,8 +21,9 @@ packages_of() {
     plot) echo gnuplot-nox fonts-dejavu-core ;;
     fuzz) echo clang-14 libclang-rt-14-dev ;;
     validate) echo nodejs npm ;;
+    batch) echo parallel snakemake ;;
     lint) echo clang-format-14 clang-tidy-14 ;;
-    *) echo "unknown package set '$1'; $0 knows build, demo, picture, plot, fuzz, validate, lint" >&2; return 2 ;;
+    *) echo "unknown package set '$1'; $0 knows build, demo, picture, plot, fuzz, validate, batch, lint" >&2; return 2 ;;
   esac
 }
 

@@ -1,5 +1,6 @@
 #include "common/local_frame.h"
 
+#include <array>
 #include <cmath>
 
 namespace lacerta {
@@ -12,30 +13,24 @@ Vec3f AnyOrthogonal(const Vec3f& n) {
   return Normalized(axis - n * Dot(axis, n));
 }
 
-// Area vectors of the three fine triangles of `face` that meet at the midpoint of its edge k, added up: the middle face and
-// the corner faces at both ends.
-Vec3f AreaAround(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints,
-                 uint32_t face, int k) {
-  const Triangle& tri = coarse.triangles[face];
-  const auto& fe = coarse.face_edges[face];
-  const Vec3f m[3] = {midpoints[fe[0]], midpoints[fe[1]], midpoints[fe[2]]};
-  Vec3f sum = Cross(m[1] - m[0], m[2] - m[0]);
-  for (const int corner : {(k + 1) % 3, (k + 2) % 3}) {
-    const Vec3f& v = positions[tri[corner]];
-    sum += Cross(m[(corner + 2) % 3] - v, m[(corner + 1) % 3] - v);
+// The four fine triangles of a face, as area vectors.
+struct SplitFace {
+  SplitFace(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints, uint32_t face) {
+    for (int k = 0; k < 3; ++k) {
+      corners[k] = positions[coarse.triangles[face][k]];
+      middle[k] = midpoints[coarse.face_edges[face][k]];
+    }
   }
-  return sum;
-}
+  Vec3f AtCorner(int k) const { return Cross(middle[(k + 2) % 3] - corners[k], middle[(k + 1) % 3] - corners[k]); }
+  Vec3f InMiddle() const { return Cross(middle[1] - middle[0], middle[2] - middle[0]); }
 
-}  // namespace
+  std::array<Vec3f, 3> corners, middle;
+};
 
-LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints,
-                        uint32_t edge) {
+// normal: not yet normalized.
+LocalFrame FrameAround(const Topology& coarse, Span<const Vec3f> positions, uint32_t edge, const Vec3f& normal) {
   LocalFrame frame;
-  for (const uint32_t face : coarse.edge_faces[edge]) {
-    if (face != kNone) frame.normal += AreaAround(coarse, positions, midpoints, face, EdgeCorner(coarse, face, edge));
-  }
-  frame.normal = Normalized(frame.normal);
+  frame.normal = Normalized(normal);
   if (frame.normal == Vec3f{}) frame.normal = {0, 0, 1};
   const Vec3f along = Normalized(positions[coarse.edges[edge][1]] - positions[coarse.edges[edge][0]]);
   const Vec3f tangent = along - frame.normal * Dot(along, frame.normal);
@@ -46,11 +41,39 @@ LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Spa
   return frame;
 }
 
+}  // namespace
+
+LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints,
+                        uint32_t edge) {
+  Vec3f normal;
+  for (const uint32_t face : coarse.edge_faces[edge]) {
+    if (face == kNone) continue;
+    const SplitFace split(coarse, positions, midpoints, face);
+    const int k = EdgeCorner(coarse, face, edge);
+    normal += split.InMiddle() + split.AtCorner((k + 1) % 3) + split.AtCorner((k + 2) % 3);
+  }
+  return FrameAround(coarse, positions, edge, normal);
+}
+
 std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,
                                            const std::vector<Vec3f>& midpoints) {
+  std::vector<std::array<Vec3f, 4>> areas;  // #F: of the triangles at corners 0, 1, 2 and in the middle
+  areas.reserve(coarse.num_faces());
+  for (uint32_t f = 0; f < coarse.num_faces(); ++f) {
+    const SplitFace split(coarse, positions, midpoints, f);
+    areas.push_back({split.AtCorner(0), split.AtCorner(1), split.AtCorner(2), split.InMiddle()});
+  }
   std::vector<LocalFrame> frames;
   frames.reserve(coarse.num_edges());
-  for (uint32_t e = 0; e < coarse.num_edges(); ++e) frames.push_back(LocalFrameAt(coarse, positions, midpoints, e));
+  for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
+    Vec3f normal;
+    for (const uint32_t face : coarse.edge_faces[e]) {
+      if (face == kNone) continue;
+      const int k = EdgeCorner(coarse, face, e);
+      normal += areas[face][3] + areas[face][(k + 1) % 3] + areas[face][(k + 2) % 3];
+    }
+    frames.push_back(FrameAround(coarse, positions, e, normal));
+  }
   return frames;
 }
 

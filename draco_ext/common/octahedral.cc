@@ -27,7 +27,6 @@ std::array<int32_t, 2> OctahedralFromNormal(const Vec3f& normal, int bits) {
   std::array<int32_t, 2> point = {round(s), round(t)};
   if (point[0] == 0 || point[0] == largest) point[1] = std::min(point[1], largest - point[1]);
   if (point[1] == 0 || point[1] == largest) point[0] = std::min(point[0], largest - point[0]);
-  if (point[0] == 0 && point[1] == largest) point[1] = 0;
   return point;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "decoder/level_limits.h"
@@ -17,9 +18,14 @@ void AttributeDecoder::ReachFinestLevel() {
   if (wedges_.level < num_levels_) RefineWedges(&wedges_);
 }
 
-Status AttributeDecoder::CheckNextFits(const DecodeLimits& limits) {
+Status AttributeDecoder::CheckNextFits(const DecodeLimits& limits, uint64_t* num_floats) {
+  constexpr uint64_t kMostFloatsPerVertex = 64;
   ReachFinestLevel();
-  return CheckLevelFits(wedges_.topology, 0, wedges_.level + 1, limits).WithContext("attribute " + header_.precision.name);
+  const std::string where = "attribute " + header_.precision.name;
+  LACERTA_RETURN_IF_ERROR(CheckLevelFits(wedges_.topology, 0, num_levels_ + 1, limits).WithContext(where));
+  *num_floats += (uint64_t{wedges_.topology.num_vertices} + wedges_.topology.num_edges()) * header_.precision.components;
+  if (*num_floats / kMostFloatsPerVertex <= limits.max_vertices) return Status();
+  return LimitExceeded(where + ": values of level " + std::to_string(num_levels_ + 1) + " are over the decode limits");
 }
 
 Status AttributeDecoder::AddLevel(const SurfaceLevel& surface, RangeDecoder* coder, LevelAttribute* attribute) {

@@ -22,8 +22,9 @@ class AttributeDecoder {
   // base: level 0 of it; still: of the base triangles. Fails where the wedge mesh is no manifold.
   static StatusOr<AttributeDecoder> Create(AttributeHeader header, const LevelAttribute& base, const std::vector<uint8_t>& still);
 
-  // Fails with kLimitExceeded where the next level has more rows or triangles than allowed.
-  Status CheckNextFits(const DecodeLimits& limits);
+  // Fails with kLimitExceeded where the next level has more rows or triangles than allowed, or its floats together with `num_floats`, to which
+  // they are added, are more than 64 for each vertex allowed.
+  Status CheckNextFits(const DecodeLimits& limits, uint64_t* num_floats);
 
   // Decodes the next level and appends its rows to `attribute`; surface: the finer level, decoded. Fails with kInvalidData where a
   // value is not finite; nothing has been appended then.

@@ -190,7 +190,8 @@ Status ProgressiveDecoder::State::StartAttributes() {
 
 Status ProgressiveDecoder::State::CheckNextFits() {
   LACERTA_RETURN_IF_ERROR(CheckLevelFits(topology, num_still, mesh.num_levels + 1, options.limits));
-  for (AttributeDecoder& decoder : attribute_decoders) LACERTA_RETURN_IF_ERROR(decoder.CheckNextFits(options.limits));
+  uint64_t num_floats = 0;
+  for (AttributeDecoder& decoder : attribute_decoders) LACERTA_RETURN_IF_ERROR(decoder.CheckNextFits(options.limits, &num_floats));
   return Status();
 }
 

@@ -60,9 +60,15 @@ StatusOr<AttributedTrial> AttributedCandidate::Meet(const ErrorTargets& targets,
       const double added = std::max(found * found - fixed * fixed, 0.01 * target * target);
       return std::clamp((kAim * kAim * target * target - fixed * fixed) / added, 0.05, 20.0);  // of squares
     };
+    const double lambda = options.lambda;
     options.lambda *= change(errors.distance, exact.distance, targets.distance);
     for (size_t a = 0; a < num_attributes; ++a) {
       options.errors[a] *= std::sqrt(change(errors.attributes[a].rms_99, exact.attributes[a].rms_99, targets.attributes[a]));
+    }
+    if (trial.ratio > 1 && 2 * i >= tries) {  // the errors depend on each other: all finer, then
+      constexpr double kFiner = 0.6;
+      options.lambda = std::min(options.lambda, lambda) * kFiner * kFiner;
+      for (double& error : options.errors) error *= kFiner;
     }
     const auto is_better = [&](const AttributedTrial& other) {
       if (trial.ratio <= 1 && other.ratio <= 1) return trial.stream.size() < other.stream.size();

@@ -40,7 +40,8 @@ class AttributedCandidate {
   StatusOr<bool> CanMeet(const ErrorTargets& targets) const;
 
   // The fewest bytes found at which the stream meets the targets; where none did in `tries` attempts, each of which corrects the precision of
-  // positions and every attribute by the errors of the last one, the nearest. num_samples: of the measure.
+  // positions and every attribute by the errors of the last one, the nearest. Errors depend on each other (a texture on how far positions
+  // slide), so a coarser target may take more bytes than a finer one: try that, too. num_samples: of the measure.
   StatusOr<AttributedTrial> Meet(const ErrorTargets& targets, int tries, uint64_t num_samples) const;
 
  private:

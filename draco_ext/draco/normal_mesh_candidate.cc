@@ -25,6 +25,7 @@ namespace {
 
 // Of a base that is made finer where the remesh is reversed: a surface that needs more is better served by the next size.
 constexpr double kLargestGrowth = 1.25;
+constexpr size_t kTriedSilentLevels = 1;
 constexpr double kFreeVertices = 8;  // that any base may have more
 
 TriangleMesh Together(TriangleMesh a, const TriangleMesh& b) {
@@ -127,7 +128,9 @@ StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope
   DescentOptions options;
   options.lambda = slope.lambda;
   options.passes = slope.passes;
-  const std::vector<LevelSteps> steps = StepsForSlope(target_, slope.last_detailed, slope.step_lambda);
+  std::vector<LevelSteps> steps = StepsForSlope(target_, slope.last_detailed, slope.step_lambda);
+  // Levels far beyond the last detailed one hardly ever keep a coefficient: not looking at them takes a fraction of the time.
+  for (size_t i = static_cast<size_t>(slope.last_detailed) + kTriedSilentLevels; i < steps.size() && !target_.keeps_vertices; ++i) steps[i] = LevelSteps();
   CodedSurface coded = Descend(target_, QuantizeClosedLoop(target_, lattice, steps), options);
   if (target_.keeps_vertices) RepairVertices(target_, &coded);
   return coded;

@@ -39,7 +39,7 @@ struct CodingSlope {
   double lambda = 0;       // of the choice of coefficients
   double step_lambda = 0;  // of the steps
   double base_lambda = 0;  // of the base lattice
-  int last_detailed = 1;   // level, 1 .. L, for StepsForSlope
+  int last_detailed = 1;   // level, 1 .. L, for StepsForSlope; levels beyond the next one get no coefficients
   int passes = DescentOptions().passes;
   int quality_layers = 1;
 };

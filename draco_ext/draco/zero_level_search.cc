@@ -37,7 +37,7 @@ class ZeroLevelSearch {
  public:
   ZeroLevelSearch(const TriangleMesh& mesh, const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter,
                   const ResolvedTarget& target)
-      : mesh_(mesh), meter_(meter), target_(target), sequence_(sequence), fit_target_(mesh, kFewestSamples) {
+      : mesh_(mesh), meter_(meter), target_(target), sequence_(sequence), fit_target_(mesh, FewestSamples(mesh)) {
     if (!target.is_rate) distortion_ = Square(DistanceOfPsnr(target.psnr, meter.diagonal()));
   }
 
@@ -74,7 +74,7 @@ class ZeroLevelSearch {
   }
 
  private:
-  static constexpr size_t kFewestSamples = 6000, kMostSamples = 80000;
+  static constexpr size_t kMostSamples = 80000;
   // By which the numbers of triangles differ that are compared.
   static constexpr double kWideRatio = 1.25, kNarrowRatio = 1.1;
   static constexpr int kMostMoves = 4;
@@ -88,9 +88,15 @@ class ZeroLevelSearch {
     bool meets = false;
   };
 
+  // Small inputs have little to sample.
+  static size_t FewestSamples(const TriangleMesh& mesh) {
+    constexpr size_t kPerTriangle = 6;
+    return std::clamp<size_t>(kPerTriangle * mesh.triangles.size(), 1500, 6000);
+  }
+
   void TakeSamples(double per_triangle, size_t triangles) {
     const auto wanted = static_cast<size_t>(per_triangle * static_cast<double>(triangles));
-    fit_target_.Resample(std::clamp(wanted, kFewestSamples, kMostSamples));
+    fit_target_.Resample(std::clamp(wanted, FewestSamples(mesh_), kMostSamples));
   }
 
   Status Look(uint32_t triangles) {
@@ -210,7 +216,7 @@ class ZeroLevelSearch {
     const size_t triangles = candidate.num_triangles();
     const int num_tries = triangles < 2000 ? 12 : triangles < 5000 ? 6 : 4;
     const int descent_rounds = triangles < 5000 ? 3 : 2;
-    TakeSamples(8, std::max<size_t>(triangles, 2000));
+    TakeSamples(8, std::max<size_t>(triangles, std::min<size_t>(mesh_.triangles.size(), 2000)));
     const double added = target_.is_rate ? candidate.fit_distortion() : distortion_ - candidate.fit_distortion();
     candidate.FitForRate(std::max(added, 0.05 * candidate.fit_distortion()), kFitRounds);
     double step = trial.coding.step;

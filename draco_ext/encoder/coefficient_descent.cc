@@ -108,6 +108,13 @@ void DescendLevel(const SurfaceTarget& target, int level, const std::vector<Vec3
   CodeLevel(coarse, steps, state, &coded->levels[level - 1], &meter, choose);
 }
 
+// The finest level that has coefficients; 0 if none has.
+int LastActiveLevel(const std::vector<LevelSteps>& steps) {
+  size_t last = steps.size();
+  while (last > 0 && steps[last - 1].is_silent()) --last;
+  return static_cast<int>(last);
+}
+
 // One pass over all levels, coarse to fine. The gradient is computed once; what the coarser levels have moved since then comes to it
 // with the lumped masses.
 //   positions  Synthesize of `coded`, on entry and on return
@@ -116,8 +123,11 @@ void DescendOnce(const SurfaceTarget& target, const DescentOptions& options, Cod
   if (options.move_base) DescendBase(target, gradients[LevelAhead(target, 0)], &coded->base);
   const std::vector<Vec3f> before = std::exchange(*positions, LatticePoints(coded->base));
   CodingState state;
-  for (int level = 1; level <= target.num_levels(); ++level) {
+  const int last_active = LastActiveLevel(coded->steps);
+  for (int level = 1; level <= last_active; ++level) {
     const Topology& coarse = target.topologies[level - 1];
+    state.normal_continues = level < last_active && coded->steps[level].normal_step > 0;
+    state.tangential_continues = level < last_active && coded->steps[level].tangential_step > 0;
     const std::vector<Vec3f> predicted = PredictMidpoints(coarse, target.stencils, *positions);
     const int ahead = LevelAhead(target, level);
     std::vector<Vec3f> present = *positions;  // on the level ahead, with the coefficients so far
@@ -130,6 +140,7 @@ void DescendOnce(const SurfaceTarget& target, const DescentOptions& options, Cod
     DescendLevel(target, level, *positions, predicted, std::move(gradient), options, coded, &state);
     AppendMidpoints(coarse, predicted, coded->steps[level - 1], coded->levels[level - 1], positions);
   }
+  for (int level = last_active + 1; level <= target.num_levels(); ++level) AppendLevel(target, *coded, level, positions);
 }
 
 // Bits of the two sets of every level.
@@ -214,15 +225,14 @@ std::vector<Vec3f> Synthesize(const SurfaceTarget& target, const CodedSurface& c
 double PlaneDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& positions) {
   std::vector<double> distance(positions.size());
   for (size_t v = 0; v < positions.size(); ++v) distance[v] = Dot(positions[v] - target.points[v], target.normals[v]);
-  double sum = 0, area = 0;
-  for (const Triangle& t : target.topologies.back().triangles) {
-    const Vec3f& corner = target.points[t[0]];
-    const double doubled_area = Norm(Cross(target.points[t[1]] - corner, target.points[t[2]] - corner));
+  double sum = 0;
+  const std::vector<Triangle>& triangles = target.topologies.back().triangles;
+  for (size_t i = 0; i < triangles.size(); ++i) {
+    const Triangle& t = triangles[i];
     const double a = distance[t[0]], b = distance[t[1]], c = distance[t[2]];
-    sum += doubled_area * (a * a + b * b + c * c + a * b + b * c + c * a) / 6;
-    area += doubled_area;
+    sum += target.areas[i] * (a * a + b * b + c * c + a * b + b * c + c * a) / 6;
   }
-  return area > 0 ? sum / area : 0;
+  return sum;
 }
 
 double SurfaceDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& positions) {

@@ -13,20 +13,16 @@ namespace lacerta {
 namespace {
 
 constexpr double kLambdaRatio = 10.0;     // between the slopes of two layers: 6 to 7 dB
-constexpr double kActiveScale = 0.5;      // a level has begun where its scale exceeds this share of its step, as in the step law
 constexpr double kRefinementWeight = 3.0;  // of the bits of the refinement: a few percent fewer bytes for some tenths of a dB
 
 // Shifts of a layer at slope `lambda` before one that has the shifts `finer`.
 std::vector<std::optional<int>> ShiftsAt(const SurfaceTarget& target, const std::vector<double>& detail_scales, const CodedSurface& coded,
                                          double lambda, std::vector<std::optional<int>> finer) {
-  const std::vector<LevelSteps> law = StepsForSlope(target, detail_scales, lambda);
-  size_t active = 0;
-  for (size_t i = 0; i < law.size(); ++i) {
-    if (detail_scales[i] > kActiveScale * law[i].normal_step) active = i;
-  }
+  const int last_detailed = LastDetailedLevel(target, detail_scales, lambda);  // later levels have not begun
+  const std::vector<LevelSteps> law = StepsForSlope(target, last_detailed, lambda);
   for (size_t i = 0; i < law.size(); ++i) {
     if (!finer[i]) continue;
-    if (i > active) {
+    if (i >= static_cast<size_t>(last_detailed)) {
       finer[i].reset();
       continue;
     }

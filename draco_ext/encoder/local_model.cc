@@ -1,7 +1,6 @@
 #include "encoder/local_model.h"
 
 namespace lacerta {
-
 namespace {
 
 // A gradient on the positions of `level` (1 .. L) as one on those of the next coarser level.
@@ -20,6 +19,20 @@ std::vector<Vec3f> BringDown(const SurfaceTarget& target, const std::vector<Vec3
 }
 
 }  // namespace
+
+std::vector<SymmetricMatrix> Curvatures(const SurfaceTarget& target, int level) {
+  const Reach reach(target, level);
+  const std::vector<float>& masses = target.masses[LevelAhead(target, level)];
+  std::vector<SymmetricMatrix> curvatures(target.topologies[level].num_vertices);
+  for (uint32_t v = 0; v < curvatures.size(); ++v) {
+    reach.Visit(v, [&](uint32_t u, float weight) {
+      const VertexMetric metric = MetricAt(target, u);
+      const float mass = weight * weight * masses[u];
+      curvatures[v].Add(target.normals[u], mass * metric.slide, mass * (metric.leave - metric.slide));
+    });
+  }
+  return curvatures;
+}
 
 std::vector<std::vector<Vec3f>> Gradients(const SurfaceTarget& target, const std::vector<Vec3f>& positions) {
   const int num_levels = target.num_levels();

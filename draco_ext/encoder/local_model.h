@@ -6,28 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/butterfly.h"
 #include "encoder/surface_target.h"
 
 namespace lacerta {
 
-// The metric of SurfaceTarget at a vertex, applied to an offset. Sliding along the surface costs a share of what leaving it
-// costs: little where the vertex was found by piercing, so that vertices just do not drift; much where it was not, since the
-// surface is not flat there in the sense that planes presume. Where vertices are kept, what suits tangential steps of twice the
-// normal one. On curves all directions matter, and more than the area at them says (docs/decisions/0008-curves.md).
-inline Vec3f Weigh(const SurfaceTarget& target, size_t v, const Vec3f& offset) {
-  constexpr float kPiercedSlideCost = 0.05f, kOtherSlideCost = 0.15f, kKeptSlideCost = 0.25f, kCurveSlideCost = 0.5f;
-  constexpr float kCurveWeight = 4.0f;  // a border is seen, though hardly any area lies at it
-  const bool on_curve = target.topologies.back().role[v] != CurveRole::kSmooth;
-  const size_t num_base = target.points.size() - target.piercing.size();
-  const bool pierced = v < num_base || target.piercing[v - num_base] == PiercingKind::kNormal;
-  const float slide_cost = on_curve                ? kCurveSlideCost
-                           : target.keeps_vertices ? kKeptSlideCost
-                           : pierced               ? kPiercedSlideCost
-                                                   : kOtherSlideCost;
-  const float weight = on_curve ? kCurveWeight : 1.0f;
-  const Vec3f& n = target.normals[v];
-  return (offset * slide_cost + n * ((1 - slide_cost) * Dot(offset, n))) * weight;
-}
+// Half the second derivative of the distortion with respect to the position of each vertex of `level`, as LocalModel sees it: #V.
+std::vector<SymmetricMatrix> Curvatures(const SurfaceTarget& target, int level);
 
 // Half the gradient of the distortion with respect to the positions of every level 0 .. L, all finer details staying as they are:
 // that of the finest level brought down by the transposed subdivision. positions: of the finest level.
@@ -66,7 +51,14 @@ class LocalModel {
  public:
   // gradient: of LevelAhead(target, level).
   LocalModel(const SurfaceTarget& target, int level, std::vector<Vec3f> gradient)
-      : target_(target), reach_(target, level), masses_(target.masses[LevelAhead(target, level)]), gradient_(std::move(gradient)) {}
+      : target_(target),
+        topology_(target.topologies[level]),
+        reach_(target, level),
+        masses_(target.masses[LevelAhead(target, level)]),
+        curvatures_(target.curvatures[level]),
+        gradient_(std::move(gradient)),
+        slopes_(topology_.num_vertices),
+        is_known_(topology_.num_vertices, 0) {}
 
   // Distortion as a function of a move of vertex v by `length` along `direction`: slope * 2 length + curvature * length^2.
   struct Parabola {
@@ -74,26 +66,46 @@ class LocalModel {
     float Rise(float length) const { return length * (2 * slope + curvature * length); }
     float Lowest() const { return curvature > 0 ? -slope / curvature : 0.0f; }
   };
-  Parabola Along(uint32_t v, const Vec3f& direction) const {
-    Parabola p;
-    reach_.Visit(v, [&](uint32_t u, float weight) {
-      p.slope += weight * Dot(gradient_[u], direction);
-      p.curvature += weight * weight * masses_[u] * Dot(direction, Weigh(target_, u, direction));
-    });
-    return p;
+  Parabola Along(uint32_t v, const Vec3f& direction) {
+    return {Dot(SlopeAt(v), direction), curvatures_[v].Along(direction)};
   }
 
   void Move(uint32_t v, const Vec3f& displacement) {
     reach_.Visit(v, [&](uint32_t u, float weight) {
       gradient_[u] += Weigh(target_, u, displacement) * (masses_[u] * weight);
+      Forget(u);
     });
   }
 
  private:
+  const Vec3f& SlopeAt(uint32_t v) {
+    if (is_known_[v] == 0) {
+      Vec3f sum;
+      reach_.Visit(v, [&](uint32_t u, float weight) { sum += gradient_[u] * weight; });
+      slopes_[v] = sum;
+      is_known_[v] = target_.next_twin.empty();  // else others than Forget finds may change it
+    }
+    return slopes_[v];
+  }
+
+  // Slopes that the gradient at u of the level ahead is part of.
+  void Forget(uint32_t u) {
+    if (!target_.next_twin.empty()) return;
+    if (u < topology_.num_vertices) {
+      is_known_[u] = 0;
+    } else {
+      VisitStencil(topology_, target_.stencils, u - topology_.num_vertices, [&](uint32_t w, float) { is_known_[w] = 0; });
+    }
+  }
+
   const SurfaceTarget& target_;
+  const Topology& topology_;
   const Reach reach_;
   const std::vector<float>& masses_;
+  const std::vector<SymmetricMatrix>& curvatures_;
   std::vector<Vec3f> gradient_;
+  std::vector<Vec3f> slopes_;       // #V of `level`, where known
+  std::vector<uint8_t> is_known_;
 };
 
 }  // namespace lacerta

@@ -4,22 +4,33 @@
 #include <numeric>
 #include <utility>
 
+#include "encoder/local_model.h"
+
 namespace lacerta {
 namespace {
 
-// A third of the area of the triangles around each vertex, as a share of the whole.
-std::vector<float> VertexAreas(const std::vector<Triangle>& triangles, const std::vector<Vec3f>& positions) {
-  std::vector<double> area(positions.size(), 0.0);
+// Areas of the triangles as shares of the whole.
+std::vector<float> AreaShares(const std::vector<Triangle>& triangles, const std::vector<Vec3f>& positions) {
+  std::vector<double> areas;
+  areas.reserve(triangles.size());
   double total = 0;
   for (const Triangle& t : triangles) {
     const Vec3d a = Vec3Cast<double>(positions[t[0]]);
-    const double share = Norm(Cross(Vec3Cast<double>(positions[t[1]]) - a, Vec3Cast<double>(positions[t[2]]) - a));
-    for (const uint32_t v : t) area[v] += share;
-    total += 3 * share;
+    areas.push_back(Norm(Cross(Vec3Cast<double>(positions[t[1]]) - a, Vec3Cast<double>(positions[t[2]]) - a)));
+    total += areas.back();
   }
-  std::vector<float> result(area.size());
-  for (size_t v = 0; v < area.size(); ++v) result[v] = static_cast<float>(total > 0 ? area[v] / total : 0.0);
-  return result;
+  std::vector<float> shares(areas.size());
+  for (size_t i = 0; i < areas.size(); ++i) shares[i] = static_cast<float>(total > 0 ? areas[i] / total : 0.0);
+  return shares;
+}
+
+// A third of the area of the triangles around each vertex.
+std::vector<float> VertexAreas(size_t num_vertices, const std::vector<Triangle>& triangles, const std::vector<float>& areas) {
+  std::vector<double> sums(num_vertices, 0.0);
+  for (size_t i = 0; i < triangles.size(); ++i) {
+    for (const uint32_t v : triangles[i]) sums[v] += areas[i] / 3.0;
+  }
+  return std::vector<float>(sums.begin(), sums.end());
 }
 
 // Each midpoint hands half of its mass to either end of its edge.
@@ -91,15 +102,17 @@ SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
     topologies.push_back(Refine(topologies.back()));
   }
   std::vector<std::vector<float>> masses(topologies.size());
-  masses.back() = VertexAreas(topologies.back().triangles, mesh.mesh.positions);
+  std::vector<float> areas = AreaShares(topologies.back().triangles, mesh.mesh.positions);
+  masses.back() = VertexAreas(mesh.mesh.positions.size(), topologies.back().triangles, areas);
   for (size_t level = topologies.size() - 1; level > 0; --level) {
     masses[level - 1] = LumpMasses(topologies[level - 1], masses[level]);
   }
   std::vector<uint32_t> next_twin = ChainTwins(mesh.mesh.tags.joined, topologies);
   topologies.back() = WithoutEdges(std::move(topologies.back()));
-  return {std::move(topologies), std::move(stencils), std::move(spreads), mesh.mesh.positions,
-          mesh.surface_normals,  std::move(masses),   mesh.piercing,      std::move(next_twin),
-          mesh.keeps_vertices};
+  SurfaceTarget target{std::move(topologies), std::move(stencils), std::move(spreads), mesh.mesh.positions, mesh.surface_normals, std::move(areas),
+                       std::move(masses),     {},                  mesh.piercing,      std::move(next_twin), mesh.keeps_vertices};
+  for (int level = 0; level <= target.num_levels(); ++level) target.curvatures.push_back(Curvatures(target, level));
+  return target;
 }
 
 }  // namespace lacerta

@@ -46,7 +46,13 @@ def step_value(bits):
 
 def base_checksum(base):
     words = [value & 0xFFFFFFFF for row in base["lattice"] + base["triangles"] for value in row]
-    return zlib.crc32(struct.pack("<f%dI" % len(words), base["step"], *words)) & 0xFFFF
+    words += base.get("group_sizes", [])
+    data = struct.pack("<f%dI" % len(words), base["step"], *words)
+    for attribute in base.get("attributes", []):
+        data += bytes(attribute["in_group"])
+        used = sorted({v for f in faces_with(base, attribute) for v in base["triangles"][f]})
+        data += b"".join(struct.pack("<i", x) for v in used for x in integers_at(base, attribute, v))
+    return zlib.crc32(data) & 0xFFFF
 
 
 def next_step(bits):
@@ -83,10 +89,32 @@ def read_steps(reader, num_levels):
     return levels
 
 
+def read_attributes(reader, num_levels):
+    attributes = []
+    for _ in range(reader.varint()):
+        kind, prediction, components = reader.unsigned(1), reader.unsigned(1), reader.varint()
+        name = reader.take(reader.unsigned(1)).decode()
+        assert kind <= 5 and prediction <= 2 and (prediction < 2 or kind == 1) and components > 0
+        assert kind != 1 or components == 3
+        assert kind != 2 or components in (3, 4)
+        precision = reader.unsigned(1 if kind == 1 else 2)
+        assert 2 <= precision <= 16 if kind == 1 else 0x0080 <= precision <= 0x7F7F
+        coded, step, steps = reader.varint(), 0x3A80, []
+        assert coded >> num_levels == 0
+        for i in range(num_levels):
+            if coded >> i & 1:
+                step += reader.signed_varint()
+                assert 0x0080 <= step <= 0x7F7F
+            steps.append(step if coded >> i & 1 else 0)
+        attributes.append({"kind": kind, "prediction": prediction, "components": components, "name": name, "precision": precision, "steps": steps})
+    assert sum(a["components"] for a in attributes) <= 1024
+    return attributes
+
+
 def read_header(reader, base):
     assert reader.take(3) == b"LAC" and reader.unsigned(1) == 1
     counts = reader.unsigned(1)
-    assert counts < 128 and 1 <= counts & 15 <= 12
+    assert 1 <= counts & 15 <= 12
     if counts & 32:
         assert step_value(reader.unsigned(2)) == base["step"]
     assert reader.unsigned(2) == base_checksum(base)
@@ -96,9 +124,11 @@ def read_header(reader, base):
         length = reader.varint()
         assert 0 < length <= 8 + 3 * (len(base["lattice"]) + 4 * len(base["triangles"])) // 2
     tags = reader.take(length)
+    assert counts & 192 != 192
+    attributes = read_attributes(reader, counts & 15) if counts & 128 else None
     end = reader.at
     assert reader.unsigned(2) == zlib.crc32(reader.data[:end]) & 0xFFFF
-    return levels, tags, counts & 64 != 0
+    return levels, tags, counts & 64 != 0, attributes
 
 
 def read_segment(reader, what):
@@ -391,8 +421,7 @@ class CoefficientDecoder:
         self.models = [SetModels(NORMAL_PRIORS), SetModels(TANGENTIAL_PRIORS), SetModels(TANGENTIAL_PRIORS)]
         self.coarse = {}  # set -> (level tables, values, step bits)
 
-    def decode(self, level, sets, payload):
-        decoder = RangeDecoder(payload)
+    def decode(self, level, sets, decoder):
         normal, tangential = [0] * len(level.edges), [0] * 2 * len(level.edges)
 
         def normal_edge(e, activity, sign_class, expect_negative):
@@ -461,7 +490,7 @@ def take_layer_segment(reader, levels, first_decoder):
     if drop is None:
         first_decoder.coarse = coarse
         sets = {name: (at.step_bits(name),) for name in at.sets}
-        at.normal, at.tangential = first_decoder.decode(at.level, sets, payload)
+        at.normal, at.tangential = first_decoder.decode(at.level, sets, RangeDecoder(payload))
         return
     decoder = RangeDecoder(payload)
     normal, tangential = [0] * len(at.normal), [0] * len(at.tangential)
@@ -958,14 +987,151 @@ def decode_compact_base(data):
     return {"step": step, "offset": offset, "lattice": lattice, "triangles": triangles}
 
 
+# --- Attributes ---
+
+def faces_with(base, attribute):
+    face, faces = 0, []
+    for size, has in zip(base["group_sizes"], attribute["in_group"]):
+        faces += range(face, face + size) if has else []
+        face += size
+    return faces
+
+
+def integers_at(base, attribute, v):
+    n = len(attribute["values"]) // len(base["lattice"])
+    return attribute["values"][n * v:n * v + n]
+
+
+def glue(base, faces, is_glued):
+    """Rows at the corners of `faces`, and the first corner (face, k) of each."""
+    sides = {}
+    for f, t in enumerate(base["triangles"]):
+        for k in range(3):
+            ends = [tuple(base["lattice"][t[(k + i) % 3]]) for i in (1, 2)]
+            sides.setdefault(tuple(sorted(ends)), []).append((f, k, ends[0] < ends[1]))
+    parent = {(f, k): (f, k) for f in faces for k in range(3)}
+
+    def find(corner):
+        while parent[corner] != corner:
+            corner = parent[corner]
+        return corner
+
+    for ends, at in sides.items():
+        if len(at) != 2 or ends[0] == ends[1] or at[0][2] == at[1][2] or any(f not in faces for f, _, _ in at):
+            continue
+        (f, k, _), (g, j, _) = at
+        pairs = [((f, (k + i) % 3), (g, (j + 3 - i) % 3)) for i in (1, 2)]
+        if all(is_glued(base["triangles"][a][x], base["triangles"][b][y]) for (a, x), (b, y) in pairs):
+            for a, b in pairs:
+                first, second = sorted((find(a), find(b)))
+                parent[second] = first
+    numbers, rows = {}, {}
+    for f in sorted(faces):
+        rows[f] = [numbers.setdefault(find((f, k)), len(numbers)) for k in range(3)]
+    return rows, list(numbers)
+
+
+def octahedral_direction(s, t, bits):
+    c = ((1 << bits) - 2) / 2
+    y, z = s / c - 1, t / c - 1
+    x = 1 - abs(y) - abs(z)
+    fold = max(-x, 0)
+    return unit([x, y + (fold if y < 0 else -fold), z + (fold if z < 0 else -fold)])
+
+
+class AttributeLevels:
+    def __init__(self, base, attribute, header):
+        self.header = header
+        faces = set(faces_with(base, attribute))
+        same = lambda v, w: integers_at(base, attribute, v) == integers_at(base, attribute, w)
+        rows, firsts = glue(base, faces, same)
+        self.faces = sorted(faces)  # of the surface, under each of the wedge mesh
+        self.level = base_level(len(firsts), [rows[f] for f in self.faces])
+        self.values, self.residuals = [], []
+        for f, k in firsts:
+            numbers = integers_at(base, attribute, base["triangles"][f][k])
+            if header["kind"] == 1:
+                self.values.append(octahedral_direction(*numbers, header["precision"]))
+            else:
+                self.values.append([x * step_value(header["precision"]) for x in numbers])
+        self.num_residuals = {1: 2, 2: 3}.get(header["kind"], header["components"])
+        self.models = [SetModels(NORMAL_PRIORS) for _ in range(self.num_residuals)]
+        self.coarse = [None] * self.num_residuals
+
+    def decode(self, number, surface, positions, decoder):
+        level, bits = self.level, self.header["steps"][number]
+        residuals = [[0] * len(level.edges) for _ in range(self.num_residuals)]
+        coarse, self.coarse = self.coarse, [None] * self.num_residuals
+        for c in range(self.num_residuals if bits else 0):
+            def edge(e, activity, sign_class, expect_negative):
+                before = abs(residuals[c - 1][e]) if c else 0
+                companion = (0 if before == 0 else 1 if before < 3 else 2) + 3 * level.on_curve[e]
+                residuals[c][e] = decode_coefficient(decoder, self.models[c], activity, companion, sign_class, expect_negative)
+                return residuals[c][e]
+            parents = forecasts(*coarse[c], bits) if coarse[c] else None
+            self.coarse[c] = (level, decode_set(level, parents, edge), bits)
+        self.residuals.append([q for one in residuals for q in one] if bits else [])
+        self.values += [self.value(e, [one[e] for one in residuals], bits, surface, positions) for e in range(len(level.edges))]
+        self.level = refine(level)
+        self.faces = [4 * f + k for f in self.faces for k in range(4)]
+
+    def value(self, e, residuals, bits, surface, positions):
+        level, kind = self.level, self.header["kind"]
+        first = self.values[level.edges[e][0]]
+        if self.header["prediction"] == 2:
+            row = [0.0] * 3
+            for f in level.faces(e):
+                row = add(row, areas_around(surface, self.faces[f], level.face_edges[f].index(e), positions))
+        elif self.header["prediction"] == 1:
+            row = add(*(scale(self.values[v], 0.5) for v in level.edges[e][:2]))
+        else:
+            row = add(*(scale(self.values[v], w) for v, w in stencil(level, e)))
+        if kind in (1, 2):
+            row = (unit(row[:3]) if any(row[:3]) else first[:3]) + first[3:]
+        if not any(residuals):
+            return row
+        moves = [q * step_value(bits) for q in residuals]
+        if kind == 1:
+            f = level.edges[e][2]
+            k = level.face_edges[f].index(e)
+            t = surface.triangles[self.faces[f]]
+            along = unit(sub(positions[t[(k + 2) % 3]], positions[t[(k + 1) % 3]]))
+            across = sub(along, scale(row, dot(along, row)))
+            if dot(across, across) <= 1e-6:
+                axis = [float(c == min(range(3), key=lambda i: abs(row[i]))) for c in range(3)]
+                across = sub(axis, scale(row, dot(axis, row)))
+            across = unit(across)
+            return unit(add(row, scale(across, moves[0]), scale(cross(row, across), moves[1])))
+        moved = add(row[:len(moves)], moves)
+        return (unit(moved) if kind == 2 else moved) + row[len(moves):]
+
+
+def areas_around(surface, f, k, positions):
+    """Of the finer level's triangles in face f of the surface that meet in the midpoint of its edge k."""
+    t, V = surface.triangles[f], surface.num_vertices
+    m = [positions[V + e] for e in surface.face_edges[f]]
+    total = cross(sub(m[1], m[0]), sub(m[2], m[0]))
+    for c in ((k + 1) % 3, (k + 2) % 3):
+        v = positions[t[c]]
+        total = add(total, cross(sub(m[(c + 2) % 3], v), sub(m[(c + 1) % 3], v)))
+    return total
+
+
 # --- The decoder on one page ---
 
 def decode(base, data):
+    """Tags, coefficients, positions, attributes."""
     reader = Reader(data)
+    steps, payload, has_layers, headers = read_header(reader, base)
+    attributes = []
+    if headers is not None:
+        attributes = [AttributeLevels(base, a, header) for a, header in zip(base["attributes"], headers)]
+        rows, firsts = glue(base, set(range(len(base["triangles"]))), lambda v, w: True)
+        lattice = [base["lattice"][base["triangles"][f][k]] for f, k in firsts]
+        base = {"step": base["step"], "lattice": lattice, "triangles": [rows[f] for f in sorted(rows)]}
     positions = [[value * base["step"] for value in point] for point in base["lattice"]]
     coefficients = []
     coefficient_decoder = CoefficientDecoder()
-    steps, payload, has_layers = read_header(reader, base)
     level, tags = tagged_level(base, payload)
     if has_layers:
         levels = []
@@ -977,15 +1143,17 @@ def decode(base, data):
         for at in levels:
             synthesize(at.level, at.sets, at.normal, at.tangential, positions)
             coefficients.append({"normal": at.normal, "tangential": at.tangential})
-        return tags, coefficients, positions
+        return tags, coefficients, positions, attributes
     for number, sets in enumerate(steps, 1):
-        silent = not sets["normal"][0] and not sets["tangential"][0]
-        payload = b"" if silent else read_segment(reader, number)
-        normal, tangential = coefficient_decoder.decode(level, sets, payload)
+        silent = not sets["normal"][0] and not sets["tangential"][0] and not any(a.header["steps"][number - 1] for a in attributes)
+        decoder = RangeDecoder(b"" if silent else read_segment(reader, number))
+        normal, tangential = coefficient_decoder.decode(level, sets, decoder)
         synthesize(level, sets, normal, tangential, positions)
+        for attribute in attributes:
+            attribute.decode(number - 1, level, positions, decoder)
         coefficients.append({"normal": normal, "tangential": tangential})
         level = refine(level)
-    return tags, coefficients, positions
+    return tags, coefficients, positions, attributes
 
 
 def main(paths):
@@ -998,13 +1166,18 @@ def main(paths):
             print("%s: %d vertices, %d triangles" % (path, len(golden["lattice"]), len(golden["triangles"])))
             continue
         with open(path[:-len("json")] + "lac", "rb") as file:
-            tags, coefficients, positions = decode(golden["base"], file.read())
+            tags, coefficients, positions, attributes = decode(golden["base"], file.read())
         assert tags == golden["base"].get("tags", dict.fromkeys(tags, [])), path + ": tags differ"
         assert coefficients == golden["levels"], path + ": coefficients differ"
         assert len(positions) == len(golden["positions"]), path + ": numbers of positions differ"
         size = max(abs(x) for p in golden["positions"] for x in p)
         worst = max(abs(x - y) for p, q in zip(positions, golden["positions"]) for x, y in zip(p, q))
         assert worst <= 1e-4 * size, "%s: a position is off by %g" % (path, worst)
+        for attribute, wanted in zip(attributes, golden.get("attributes", [])):
+            assert attribute.residuals == wanted["residuals"], "%s: residuals of %s differ" % (path, attribute.header["name"])
+            values = [x for row in attribute.values for x in row]
+            assert len(values) == len(wanted["values"]) and max(abs(x - y) for x, y in zip(values, wanted["values"])) <= 1e-4, \
+                "%s: values of %s differ" % (path, attribute.header["name"])
         print("%s: %d levels, %d vertices, largest difference %.2g" % (path, len(coefficients), len(positions), worst / size))
     assert paths, "no golden stream given"
 

@@ -4,6 +4,7 @@
 #include "common/crc32.h"
 #include "common/stream_layout.h"
 #include "decoder/range_decoder.h"
+#include "draco_ext/encoder/attributed_test_streams.h"
 #include "draco_ext/encoder/test_streams.h"
 #include "encoder/range_encoder.h"
 #include "fuzz/fuzz_input.h"
@@ -11,6 +12,7 @@
 
 namespace {
 
+using lacerta::AttributedBase;
 using lacerta::BaseMesh;
 using lacerta::Bytes;
 using lacerta::Span;
@@ -22,12 +24,37 @@ void Put(uint32_t value, int num_bytes, Bytes* bytes) {
 // Whether levels of these flags have a segment.
 bool IsSilent(uint8_t flags) { return (flags & (lacerta::kCodesNormal | lacerta::kCodesTangential)) == 0; }
 
-Bytes MakeStream(const BaseMesh& base, lacerta::fuzz::FuzzInput* input) {
+// The attributes of a base: prediction, levels and steps are the fuzzer's.
+void PutAttributes(const AttributedBase& base, int num_levels, lacerta::fuzz::FuzzInput* input, Bytes* bytes) {
+  Put(static_cast<uint32_t>(base.attributes.size()), 1, bytes);
+  for (const lacerta::BaseAttribute& a : base.attributes) {
+    Put(static_cast<uint32_t>(a.precision.kind), 1, bytes);
+    Put(input->Byte() & 3, 1, bytes);
+    Put(a.precision.components, 1, bytes);
+    Put(static_cast<uint32_t>(a.precision.name.size()), 1, bytes);
+    bytes->insert(bytes->end(), a.precision.name.begin(), a.precision.name.end());
+    if (a.precision.octahedral_bits > 0) {
+      Put(static_cast<uint32_t>(a.precision.octahedral_bits), 1, bytes);
+    } else {
+      Put(lacerta::StepToBits(a.precision.step), 2, bytes);
+    }
+    const uint32_t levels = input->Byte() & 0x7f;
+    Put(levels, 1, bytes);
+    for (int i = 0; i < num_levels; ++i) {
+      if ((levels >> i & 1) == 0) continue;
+      do bytes->push_back(input->Byte());
+      while (bytes->back() >= 0x80);
+    }
+  }
+}
+
+// attributed: the base that `base` is glued from, or null.
+Bytes MakeStream(const BaseMesh& base, const AttributedBase* attributed, lacerta::fuzz::FuzzInput* input) {
   Bytes bytes = {'L', 'A', 'C', lacerta::kRefinementVersion};
   const int num_levels = 1 + input->Byte() % lacerta::kMaxLevels;
   bytes.push_back(static_cast<uint8_t>(lacerta::kHasTags | lacerta::kHasBaseStep | num_levels));
   Put(lacerta::StepToBits(base.step), 2, &bytes);
-  Put(BaseChecksum(base), 2, &bytes);
+  Put(attributed != nullptr ? BaseChecksum(*attributed) : BaseChecksum(base), 2, &bytes);
   std::vector<uint8_t> flags(static_cast<size_t>(num_levels + num_levels % 2));
   for (size_t i = 0; i < flags.size(); i += 2) {
     const uint8_t two = input->Byte();
@@ -48,11 +75,15 @@ Bytes MakeStream(const BaseMesh& base, lacerta::fuzz::FuzzInput* input) {
   if (tags.empty()) bytes[4] &= static_cast<uint8_t>(~lacerta::kHasTags);
   if (!tags.empty()) Put(static_cast<uint32_t>(tags.size()), 1, &bytes);
   bytes.insert(bytes.end(), tags.begin(), tags.end());
+  if (attributed != nullptr) {
+    bytes[4] |= lacerta::kHasAttributes;
+    PutAttributes(*attributed, num_levels, input, &bytes);
+  }
   lacerta::Crc32 crc;
   crc.Add(bytes);
   Put(crc.low16(), 2, &bytes);
   for (int level = 1; level <= num_levels && !input->empty(); ++level) {
-    if (IsSilent(flags[static_cast<size_t>(level - 1)])) continue;
+    if (attributed == nullptr && IsSilent(flags[static_cast<size_t>(level - 1)])) continue;
     const Span<const uint8_t> payload = input->Take(input->Byte() & 0x7f);
     Put(static_cast<uint32_t>(payload.size()), 1, &bytes);
     Put(lacerta::SegmentChecksum(level, payload), 2, &bytes);
@@ -74,12 +105,30 @@ void CheckTags(const lacerta::BaseTags& tags, const BaseMesh& base) {
   FUZZ_CHECK(again.still == tags.still && again.crease == tags.crease && again.corner == tags.corner && again.joined == tags.joined);
 }
 
+// Rows of every attribute at all triangles, and no more of them than the limits allow.
+void CheckAttributes(const lacerta::ProgressiveDecoder& decoder, const lacerta::DecodeLimits& limits) {
+  const size_t num_triangles = decoder.Triangles().size();
+  FUZZ_CHECK(decoder.attributes().empty() || decoder.Groups().size() == num_triangles);
+  for (size_t a = 0; a < decoder.attributes().size(); ++a) {
+    const uint32_t num_values = decoder.attributes()[a].num_values();
+    FUZZ_CHECK(num_values <= limits.max_vertices);
+    const std::vector<lacerta::Triangle> corners = decoder.Corners(a);
+    FUZZ_CHECK(corners.size() == num_triangles);
+    for (const lacerta::Triangle& t : corners) {
+      for (const uint32_t row : t) FUZZ_CHECK(row < num_values || row == lacerta::MeshAttribute::kNoValue);
+    }
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   lacerta::fuzz::FuzzInput input(data, size);
   const int choice = input.Byte();
-  const BaseMesh base = choice % 5 == 0   ? lacerta::testing::Octahedron()
+  const bool has_attributes = choice >= 128;
+  const AttributedBase attributed = lacerta::testing::OctahedronWithAttributes();
+  const BaseMesh base = has_attributes    ? GlueBase(attributed).value().mesh
+                        : choice % 5 == 0   ? lacerta::testing::Octahedron()
                         : choice % 5 == 1 ? lacerta::testing::Torus(5, 4)
                         : choice % 5 == 2 ? lacerta::testing::Square()
                         : choice % 5 == 3 ? lacerta::testing::OctahedronBesideStillSheets().base
@@ -87,9 +136,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   lacerta::RefinementOptions options;
   options.limits = {3000, 6000};
   const size_t cut = 1 + input.Byte();
-  const Bytes stream = MakeStream(base, &input);
+  const Bytes stream = MakeStream(base, has_attributes ? &attributed : nullptr, &input);
+  const auto create = [&] {
+    return has_attributes ? lacerta::ProgressiveDecoder::Create(attributed, options).value() : lacerta::ProgressiveDecoder::Create(base, options).value();
+  };
 
-  lacerta::ProgressiveDecoder decoder = lacerta::ProgressiveDecoder::Create(base, options).value();
+  lacerta::ProgressiveDecoder decoder = create();
   for (size_t begin = 0; begin < stream.size(); begin += cut) {
     const Span<const uint8_t> rest = Span<const uint8_t>(stream).Subspan(begin);
     const bool ok = decoder.Append(rest.First(std::min(cut, rest.size()))).ok();
@@ -97,12 +149,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     FUZZ_CHECK(decoder.bytes_used() <= stream.size());
     FUZZ_CHECK(decoder.mesh().positions.size() <= options.limits.max_vertices);
   }
-  const lacerta::RefinementResult whole = DecodeRefinement(base, stream, options).value();
-  FUZZ_CHECK(whole.level == decoder.level());
-  FUZZ_CHECK(whole.mesh.positions == decoder.mesh().positions);
-  FUZZ_CHECK(whole.refinement.ok() == decoder.refinement().ok());
-  const auto mesh = MeshAtLevel(whole.mesh, whole.level);
+  lacerta::ProgressiveDecoder whole = create();
+  FUZZ_CHECK(whole.Append(stream).ok() == decoder.refinement().ok());
+  FUZZ_CHECK(whole.level() == decoder.level());
+  FUZZ_CHECK(whole.mesh().positions == decoder.mesh().positions);
+  const auto mesh = MeshAtLevel(whole.mesh(), whole.level());
   FUZZ_CHECK(mesh.ok() && mesh.value().triangles.size() <= options.limits.max_triangles);
-  CheckTags(whole.mesh.tags, base);
+  CheckAttributes(decoder, options.limits);
+  CheckTags(whole.mesh().tags, base);
   return 0;
 }

@@ -81,7 +81,7 @@ TEST(NormalMeshCandidate, BordersThatShareOnlyTheirEndsAreNotJoined) {
     for (uint32_t e = 0; e < topology.num_edges(); ++e) EXPECT_FALSE(topology.is_copy(e)) << "edge " << e;
     const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(mesh).value();
     constexpr double kLambda = 1e-10;  // of a stream near 83 dB
-    const CodedStream coded = candidate.Code({kLambda, kLambda}, EncodeMode::kDefault).value();
+    const CodedStream coded = candidate.Code(kLambda, EncodeMode::kDefault).value();
     psnr[touches] = Psnr(meter.Measure(coded.FinestMesh()).value().Rms(), meter.diagonal());
   }
   EXPECT_NEAR(psnr[1], psnr[0], 3.0);
