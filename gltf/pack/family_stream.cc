@@ -25,28 +25,58 @@ StatusOr<AttributedMesh> PlainNames(AttributedMesh mesh) {
   return mesh;
 }
 
-// Bases to try, coarse to fine: as long as the remesh over one misses the targets, the next is twice as large.
-std::optional<AttributedTrial> SmallestTrial(const AttributedSurface& input, const ErrorTargets& targets, size_t coarsest,
-                                             size_t most) {
-  constexpr int kTries = 5;
-  constexpr uint64_t kSamples = 100'000;
-  std::optional<AttributedTrial> best;
-  const size_t finest = 2 * input.original.surface.triangles.size();
-  for (size_t vertices = std::max<size_t>(coarsest / 2, 40); vertices <= most; vertices *= 2) {
-    int levels = 1;
-    for (size_t faces = 8 * vertices; faces < finest && levels < 4; faces *= 4) ++levels;
-    const StatusOr<AttributedCandidate> candidate =
-        AttributedCandidate::Create(input, static_cast<uint32_t>(vertices), levels);
-    if (!candidate.ok()) continue;
-    const StatusOr<bool> can_meet = candidate.value().CanMeet(targets);
-    if (!can_meet.ok() || !can_meet.value()) continue;
-    StatusOr<AttributedTrial> trial = candidate.value().Meet(targets, kTries, kSamples);
-    if (!trial.ok() || trial.value().ratio > 1.0) continue;
-    if (best.has_value() && trial.value().stream.size() >= best->stream.size()) break;  // sizes have one minimum
-    best = std::move(trial).value();
+// Tries bases of `coarsest` vertices times powers of two: from one whose third level is as fine as the input downhill, by
+// bytes, to either side.
+class BaseSearch {
+ public:
+  BaseSearch(const AttributedSurface& input, const ErrorTargets& targets, size_t coarsest, size_t most)
+      : input_(input), targets_(targets), coarsest_(coarsest), most_(most) {}
+
+  std::optional<AttributedTrial> Run() {
+    constexpr size_t kStartShare = 48;  // of the input's triangles: twice as many faces, times 64 at level 3, are a bit more
+    const size_t num_triangles = input_.original.surface.triangles.size();
+    int start = 0;
+    while (SizeAt(start + 1) <= std::min(num_triangles / kStartShare, most_)) ++start;
+    std::optional<AttributedTrial> best = At(start);
+    bool is_downhill = false;
+    for (int i = start - 1; i >= 0 && best.has_value() && Take(At(i), &best); --i) is_downhill = true;
+    for (int i = start + 1; !is_downhill && SizeAt(i) <= most_; ++i) {
+      if (!Take(At(i), &best) && best.has_value()) break;
+    }
+    return best;
   }
-  return best;
-}
+
+ private:
+  size_t SizeAt(int i) const { return coarsest_ << i; }
+
+  std::optional<AttributedTrial> At(int i) const {
+    constexpr int kTries = 4;
+    constexpr uint64_t kSamples = 100'000;
+    const size_t vertices = SizeAt(i);
+    int levels = 1;
+    for (size_t faces = 8 * vertices; faces < 2 * input_.original.surface.triangles.size() && levels < 4; faces *= 4) ++levels;
+    const StatusOr<AttributedCandidate> candidate =
+        AttributedCandidate::Create(input_, static_cast<uint32_t>(vertices), levels);
+    if (!candidate.ok()) return std::nullopt;
+    const StatusOr<bool> can_meet = candidate.value().CanMeet(targets_);
+    if (!can_meet.ok() || !can_meet.value()) return std::nullopt;
+    StatusOr<AttributedTrial> trial = candidate.value().Meet(targets_, kTries, kSamples);
+    if (!trial.ok() || trial.value().ratio > 1.0) return std::nullopt;
+    return std::move(trial).value();
+  }
+
+  // Whether it is the better one, and taken.
+  static bool Take(std::optional<AttributedTrial> trial, std::optional<AttributedTrial>* best) {
+    if (!trial.has_value() || (best->has_value() && trial->stream.size() >= (*best)->stream.size())) return false;
+    *best = std::move(trial);
+    return true;
+  }
+
+  const AttributedSurface& input_;
+  const ErrorTargets& targets_;
+  const size_t coarsest_;
+  const size_t most_;
+};
 
 std::vector<std::string> NamesOf(const AttributedBase& base) {
   std::vector<std::string> names;
@@ -135,7 +165,8 @@ StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, const FamilyStrea
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(original, texel_side));
   const InputSurface surface(parts.refined.surface, parts.topology);
   const size_t most = std::max<size_t>(parts.refined.surface.triangles.size() / 8, 80);
-  std::optional<AttributedTrial> trial = SmallestTrial({original, meter, parts, surface, history}, family.targets(), coarsest, most);
+  const AttributedSurface input{original, meter, parts, surface, history};
+  const std::optional<AttributedTrial> trial = BaseSearch(input, family.targets(), std::max<size_t>(coarsest / 2, 40), most).Run();
   if (!trial.has_value()) return Unsupported("no base makes a remesh that is close enough");
   if (options.bytes_to_beat > 0 && trial->stream.size() >= options.bytes_to_beat) {
     return Unsupported("as a stream it would be larger (" + std::to_string(trial->stream.size()) + " bytes)");
