@@ -146,7 +146,7 @@ StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const Surfac
 }  // namespace
 
 StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, const FamilyStreamOptions& options) {
-  constexpr double kMostInBase = 0.35;  // of the triangles to beat: what a base takes for the same triangles is no less
+  constexpr double kMostInBase = 0.2;  // of the triangles to beat: what a base takes for the same triangles is no less
   LACERTA_RETURN_IF_ERROR(family.status());
   if (family.leaves_out()) return Unsupported("has attributes that cannot be interpolated");
   LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original, PlainNames(family.original()));
