@@ -16,12 +16,14 @@ LIBRARIES = {
     "meshoptimizer.h": {"gltf"},
     "tiny_gltf.h": {"gltf", "samples"},
     "CLI": {"plugin"},
+    "lacerta.h": {"samples"},
     "unistd.h": {"plugin"},
 }
 
 # The layer that an installed header belongs to. decoder.h and attributed_*.h are with `common`: they hold what both sides share, the base
 # mesh with its attributes and the limits.
 INSTALLED = {
+    "lacerta.h": "plugin",
     "status.h": "common", "vec3.h": "common", "mesh.h": "common", "decoder.h": "common",
     "attributed_mesh.h": "common", "attributed_levels.h": "common", "attributed_base.h": "common",
     "surface_distance.h": "geometry", "attribute_distance.h": "geometry",
@@ -32,6 +34,7 @@ INSTALLED = {
 # Installed headers that may include a third-party library, and which.
 INSTALLED_LIBRARIES = {"draco.h": {"draco"}, "tinygltf.h": {"tiny_gltf.h"}}
 
+C_STANDARD_LIBRARY = {"stddef.h", "stdint.h", "stdio.h", "stdlib.h", "string.h"}
 GLTF_FOLDERS = {"document", "extension", "mesh_file", "pack", "trim", "unpack", "validate"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
@@ -70,8 +73,8 @@ def problem(path, bracket, name):
         if "include" in path.split("/") and first != "lacerta":
             return "an installed header includes one that is not installed"
         return None
-    if "/" not in name and "." not in name:
-        return None  # the standard library
+    if "/" not in name and ("." not in name or name in C_STANDARD_LIBRARY):
+        return None
     if first not in LIBRARIES:
         return "a library that is not in the table"
     if layer not in LIBRARIES[first]:
@@ -125,7 +128,7 @@ def main(root):
     sources = {}
     for folder in ["draco_ext", "gltf", "plugin", "samples"]:
         for file in sorted((root / folder).rglob("*")):
-            if file.suffix in {".h", ".cc", ".cpp"} and "build" not in file.relative_to(root).parts:
+            if file.suffix in {".c", ".h", ".cc", ".cpp"} and "build" not in file.relative_to(root).parts:
                 sources[file.relative_to(root).as_posix()] = file.read_text(encoding="utf-8")
     if len(sources) < 50:
         sys.exit(f"{root}: only {len(sources)} sources found; the first argument has to be the root of the repository")

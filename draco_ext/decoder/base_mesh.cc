@@ -28,8 +28,9 @@ StatusOr<BaseMesh> BaseMeshFromPositions(const TriangleMesh& mesh, float step) {
       const double exact = static_cast<double>(mesh.positions[v][axis]) / step;
       const double value = std::nearbyint(exact);
       if (!(std::fabs(value) <= kMaxLatticeValue) || std::fabs(exact - value) > 0.25) {
-        return InvalidData("vertex " + std::to_string(v) + " of the base mesh is off the lattice of step " +
-                           std::to_string(step) + ": the base was edited, or it is not the one of this refinement");
+        // Without the step: printing a float would be a seventh of the decoder in WebAssembly.
+        return InvalidData("vertex " + std::to_string(v) +
+                           " of the base mesh is off its lattice: the base was edited, or it is not the one of this refinement");
       }
       point[axis] = static_cast<int32_t>(value);
     }

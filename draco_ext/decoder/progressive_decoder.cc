@@ -301,6 +301,7 @@ int ProgressiveDecoder::num_levels() const {
   return state_->header ? static_cast<int>(state_->header->steps.size()) : 0;
 }
 int ProgressiveDecoder::state() const { return state_->num_states; }
+bool ProgressiveDecoder::has_layers() const { return state_->header && state_->header->has_layers; }
 bool ProgressiveDecoder::is_complete() const { return state_->header && state_->refinement.ok() && state_->done(); }
 size_t ProgressiveDecoder::bytes_used() const { return state_->bytes_used; }
 const Status& ProgressiveDecoder::refinement() const { return state_->refinement; }

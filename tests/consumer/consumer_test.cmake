@@ -20,7 +20,7 @@ if(SANITIZE)
   set(flags "-fsanitize=${SANITIZE}")
 endif()
 function(build source folder)
-  run(${CMAKE_COMMAND} -S ${source} -B ${folder} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
+  run(${CMAKE_COMMAND} -S ${source} -B ${folder} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_C_FLAGS=${flags}
       -DCMAKE_PREFIX_PATH=${FOLDER}/prefix -DCMAKE_BUILD_TYPE=Release
       "-DCMAKE_CXX_FLAGS=${flags}" -DCMAKE_FIND_PACKAGE_NO_PACKAGE_REGISTRY=ON)
   run(${CMAKE_COMMAND} --build ${folder})
@@ -30,10 +30,19 @@ build(${SOURCE} ${FOLDER}/build)
 run(${FOLDER}/build/consumer)
 run(${FOLDER}/build/decoder_consumer)
 
+if(SOURCE_C)
+  build(${SOURCE_C} ${FOLDER}/build_c)
+  run(${FOLDER}/build_c/c_consumer)
+endif()
+
 set(samples ${FOLDER}/samples)
 build(${SAMPLES} ${samples})
 run(${samples}/decode_progressively ${STREAM} ${FOLDER}/decoded)
 expect_output("level 0, 60 triangles\n.*level 1, 240 triangles\n.*level 2, 960 triangles\n")
+if(EXISTS ${samples}/stream_levels)
+  run(${samples}/stream_levels ${STREAM})
+  expect_output("level 0: [0-9]+ vertices, 60 triangles\nlevel 1: [0-9]+ vertices, 240 triangles\nlevel 2: [0-9]+ vertices, 960 triangles\n")
+endif()
 # What was decoded last goes back in; what comes out has to decode.
 run(${samples}/encode ${FOLDER}/decoded_2.ply ${FOLDER}/encoded.drc 60)
 expect_output("level 0: [0-9]+ triangles in the first [0-9]+ bytes")

@@ -111,6 +111,7 @@ class ProgressiveDecoder {
   // Meshes above the base that the bytes so far make, one after the other. Without quality layers they are the levels; with layers a
   // later one may have the same level as the one before, and be nearer to the surface. mesh() is the last of them.
   int state() const;
+  bool has_layers() const;    // the header announces quality layers
   bool is_complete() const;   // nothing that is wanted is missing
   size_t bytes_used() const;  // length of the prefix that holds mesh(): header and complete segments
   // Ok, or why the refinement ended early: damaged or unsupported bytes (kInvalidData, kUnsupported), a base that it

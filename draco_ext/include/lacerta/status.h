@@ -40,10 +40,19 @@ class [[nodiscard]] Status {
   std::string message_;
 };
 
+#ifdef LACERTA_TERSE
+// For builds where every byte counts, as in WebAssembly: no texts, codes alone. The arguments are not even evaluated.
+inline Status TerseStatus(StatusCode code) { return {code, {}}; }
+#define InvalidArgument(...) TerseStatus(::lacerta::StatusCode::kInvalidArgument)
+#define InvalidData(...) TerseStatus(::lacerta::StatusCode::kInvalidData)
+#define Unsupported(...) TerseStatus(::lacerta::StatusCode::kUnsupported)
+#define LimitExceeded(...) TerseStatus(::lacerta::StatusCode::kLimitExceeded)
+#else
 inline Status InvalidArgument(std::string message) { return {StatusCode::kInvalidArgument, std::move(message)}; }
 inline Status InvalidData(std::string message) { return {StatusCode::kInvalidData, std::move(message)}; }
 inline Status Unsupported(std::string message) { return {StatusCode::kUnsupported, std::move(message)}; }
 inline Status LimitExceeded(std::string message) { return {StatusCode::kLimitExceeded, std::move(message)}; }
+#endif
 inline Status NotFound(std::string message) { return {StatusCode::kNotFound, std::move(message)}; }
 inline Status IoError(std::string message) { return {StatusCode::kIoError, std::move(message)}; }
 inline Status InternalError(std::string message) { return {StatusCode::kInternal, std::move(message)}; }

@@ -1,0 +1,277 @@
+// The C functions: arguments are checked, one lock is taken, statuses become codes and messages, and nothing is thrown.
+#include "lacerta.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+#include <new>
+#include <string>
+#include <utility>
+
+#include "base_reader.h"
+#include "caller_allocator.h"
+#include "decoder/smooth_normals.h"
+#include "stream_decoder.h"
+
+using lacerta::CallerAllocator;
+using lacerta::Status;
+using lacerta::StatusCode;
+
+struct lacerta_decoder {
+  lacerta_decoder(const lacerta::StreamDecoder::Options& options, const CallerAllocator<uint8_t>& allocator)
+      : stream(options, allocator), memory(allocator) {}
+
+  std::mutex mutex;
+  lacerta::StreamDecoder stream;
+  std::string message;
+  CallerAllocator<uint8_t> memory;
+};
+
+namespace {
+
+constexpr lacerta_allocator kDefaultAllocator = {[](void*, size_t size) { return std::malloc(size); },
+                                                 [](void*, void* memory, size_t) { std::free(memory); }, nullptr};
+
+lacerta_result ResultOf(StatusCode code) {
+  switch (code) {
+    case StatusCode::kOk: return LACERTA_OK;
+    case StatusCode::kInvalidArgument: return LACERTA_INVALID_ARGUMENT;
+    case StatusCode::kInvalidData: return LACERTA_INVALID_DATA;
+    case StatusCode::kUnsupported: return LACERTA_UNSUPPORTED;
+    case StatusCode::kLimitExceeded: return LACERTA_LIMIT_EXCEEDED;
+    default: return LACERTA_INTERNAL;
+  }
+}
+
+// Runs `call`, which returns a result, and turns what it throws into one.
+template <typename Call>
+lacerta_result Guarded(const Call& call) noexcept {
+#ifdef __cpp_exceptions
+  try {
+    return call();
+  } catch (const std::bad_alloc&) {
+    return LACERTA_OUT_OF_MEMORY;
+  } catch (...) {
+    return LACERTA_INTERNAL;
+  }
+#else
+  return call();
+#endif
+}
+
+// Runs `call`, which returns a Status, with the decoder locked, and keeps its message.
+template <typename Call>
+lacerta_result Locked(lacerta_decoder* decoder, const Call& call) noexcept {
+  if (decoder == nullptr) return LACERTA_INVALID_ARGUMENT;
+  return Guarded([&] {
+    const std::lock_guard<std::mutex> lock(decoder->mutex);
+    decoder->message.clear();
+    const lacerta_result result = Guarded([&] {
+      const Status status = call();
+      decoder->message = status.message();
+      return ResultOf(status.code());
+    });
+    if (result == LACERTA_OUT_OF_MEMORY) decoder->message = "out of memory";  // short: needs none
+    return result;
+  });
+}
+
+lacerta_result NeedsBaseOr(lacerta_result result, lacerta_decoder* decoder) {
+  if (result != LACERTA_OK) return result;
+  const std::lock_guard<std::mutex> lock(decoder->mutex);
+  return decoder->stream.needs_base() ? LACERTA_NEEDS_BASE : LACERTA_OK;
+}
+
+// Whether a struct of the caller is one of this version or newer. All fields so far are of the first version.
+template <typename Struct>
+bool IsSized(const Struct* value) {
+  return value != nullptr && value->struct_size >= sizeof(Struct);
+}
+
+Status BadStruct(const char* name) {
+  return lacerta::InvalidArgument(std::string(name) + " is NULL or its struct_size is not set; use the macro beside the struct");
+}
+
+Status CheckGroup(uint32_t group) {
+  if (group == 0 || group == LACERTA_ALL_GROUPS) return Status();
+  return lacerta::InvalidArgument("group " + std::to_string(group) + " is not there; the stream has one group");
+}
+
+Status WriteMesh(const lacerta::LevelView& view, const lacerta_mesh_buffers& buffers) {
+  if (buffers.max_vertices < view.positions.size() || buffers.max_triangles < view.triangles.size()) {
+    return lacerta::InvalidArgument("the buffers are too small: the mesh has " + std::to_string(view.positions.size()) + " vertices and " +
+                                    std::to_string(view.triangles.size()) + " triangles");
+  }
+  if (buffers.positions != nullptr) std::memcpy(buffers.positions, view.positions.data(), view.positions.size() * sizeof(lacerta::Vec3f));
+  if (buffers.indices != nullptr) std::memcpy(buffers.indices, view.triangles.data(), view.triangles.size() * sizeof(lacerta::Triangle));
+  if (buffers.normals != nullptr) {
+    const std::vector<lacerta::Vec3f> normals = lacerta::SmoothNormals(view.positions, view.triangles);
+    std::memcpy(buffers.normals, normals.data(), normals.size() * sizeof(lacerta::Vec3f));
+  }
+  return Status();
+}
+
+}  // namespace
+
+static_assert(sizeof(lacerta::Vec3f) == 3 * sizeof(float) && sizeof(lacerta::Triangle) == 3 * sizeof(uint32_t), "copied as they are");
+
+uint32_t lacerta_version(void) { return LACERTA_VERSION_MAJOR << 16 | LACERTA_VERSION_MINOR << 8 | LACERTA_VERSION_PATCH; }
+
+int32_t lacerta_has_draco(void) { return lacerta::CanReadStockBase() ? 1 : 0; }
+
+const char* lacerta_result_name(lacerta_result result) {
+  switch (result) {
+    case LACERTA_OK: return "ok";
+    case LACERTA_INVALID_ARGUMENT: return "invalid argument";
+    case LACERTA_INVALID_DATA: return "invalid data";
+    case LACERTA_UNSUPPORTED: return "unsupported";
+    case LACERTA_LIMIT_EXCEEDED: return "limit exceeded";
+    case LACERTA_OUT_OF_MEMORY: return "out of memory";
+    case LACERTA_INTERNAL: return "internal error";
+    case LACERTA_NEEDS_BASE: return "needs base";
+    default: return "unknown result";
+  }
+}
+
+lacerta_result lacerta_decoder_create(const lacerta_decoder_options* options, lacerta_decoder** decoder) {
+  if (decoder == nullptr) return LACERTA_INVALID_ARGUMENT;
+  *decoder = nullptr;
+  const lacerta_decoder_options defaults = LACERTA_DECODER_OPTIONS_INIT;
+  if (options == nullptr) options = &defaults;
+  if (!IsSized(options)) return LACERTA_INVALID_ARGUMENT;
+  const lacerta_allocator& allocator = options->allocator != nullptr ? *options->allocator : kDefaultAllocator;
+  if (allocator.allocate == nullptr || allocator.deallocate == nullptr) return LACERTA_INVALID_ARGUMENT;
+  lacerta::StreamDecoder::Options stream;
+  if (options->max_level >= 0) stream.refinement.max_level = options->max_level;
+  if (options->max_vertices != 0) stream.refinement.limits.max_vertices = options->max_vertices;
+  if (options->max_triangles != 0) stream.refinement.limits.max_triangles = options->max_triangles;
+  stream.base_size = options->base_size;
+  return Guarded([&] {
+    void* memory = allocator.allocate(allocator.user, sizeof(lacerta_decoder));
+    if (memory == nullptr) return LACERTA_OUT_OF_MEMORY;
+    *decoder = new (memory) lacerta_decoder(stream, CallerAllocator<uint8_t>(allocator));
+    return LACERTA_OK;
+  });
+}
+
+void lacerta_decoder_destroy(lacerta_decoder* decoder) {
+  if (decoder == nullptr) return;
+  CallerAllocator<uint8_t> memory = decoder->memory;
+  decoder->~lacerta_decoder();
+  memory.deallocate(reinterpret_cast<uint8_t*>(decoder), sizeof(lacerta_decoder));
+}
+
+lacerta_result lacerta_decoder_append(lacerta_decoder* decoder, const void* bytes, size_t size, int32_t* level) {
+  const lacerta_result result = Locked(decoder, [&] {
+    if (bytes == nullptr && size != 0) return lacerta::InvalidArgument("bytes is NULL");
+    const Status status = decoder->stream.Append({static_cast<const uint8_t*>(bytes), size});
+    if (level != nullptr) *level = decoder->stream.level();
+    return status;
+  });
+  return NeedsBaseOr(result, decoder);
+}
+
+lacerta_result lacerta_decoder_finish(lacerta_decoder* decoder, int32_t* level) {
+  const lacerta_result result = Locked(decoder, [&] {
+    const Status status = decoder->stream.Finish();
+    if (level != nullptr) *level = decoder->stream.level();
+    return status;
+  });
+  return NeedsBaseOr(result, decoder);
+}
+
+lacerta_result lacerta_decoder_set_base(lacerta_decoder* decoder, const float* positions, uint32_t num_vertices,
+                                        const uint32_t* indices, uint32_t num_triangles) {
+  return Locked(decoder, [&] {
+    if (positions == nullptr || indices == nullptr) return lacerta::InvalidArgument("positions or indices is NULL");
+    lacerta::TriangleMesh base;
+    base.positions.resize(num_vertices);
+    std::memcpy(static_cast<void*>(base.positions.data()), positions, num_vertices * sizeof(lacerta::Vec3f));
+    base.triangles.resize(num_triangles);
+    std::memcpy(base.triangles.data(), indices, num_triangles * sizeof(lacerta::Triangle));
+    for (uint32_t i = 0; i < num_triangles; ++i) {
+      if (*std::max_element(base.triangles[i].begin(), base.triangles[i].end()) < num_vertices) continue;
+      return lacerta::InvalidArgument("triangle " + std::to_string(i) + " of the base has a vertex that is not there");
+    }
+    return decoder->stream.SetBase(std::move(base));
+  });
+}
+
+lacerta_result lacerta_decoder_base_section(lacerta_decoder* decoder, const uint8_t** bytes, size_t* size) {
+  return Locked(decoder, [&] {
+    if (bytes == nullptr || size == nullptr) return lacerta::InvalidArgument("bytes or size is NULL");
+    const lacerta::Span<const uint8_t> section = decoder->stream.base_section();
+    *bytes = section.data();
+    *size = section.size();
+    return section.empty() ? lacerta::InvalidArgument("the decoder does not ask for a base") : Status();
+  });
+}
+
+lacerta_result lacerta_decoder_get_progress(lacerta_decoder* decoder, lacerta_progress* progress) {
+  return Locked(decoder, [&] {
+    if (!IsSized(progress)) return BadStruct("progress");
+    const lacerta::StreamDecoder& stream = decoder->stream;
+    progress->level = stream.level();
+    progress->num_levels = stream.num_levels();
+    progress->state = stream.state();
+    progress->has_layers = stream.has_layers() ? 1 : 0;
+    progress->is_complete = stream.is_complete() ? 1 : 0;
+    progress->bytes_used = stream.bytes_used();
+    progress->num_groups = stream.level() < 0 ? 0 : 1;
+    progress->num_attributes = 0;
+    return Status();
+  });
+}
+
+size_t lacerta_decoder_message(lacerta_decoder* decoder, char* text, size_t size) {
+  if (decoder == nullptr) return 0;
+  const std::lock_guard<std::mutex> lock(decoder->mutex);
+  if (text != nullptr && size > 0) {
+    const size_t length = std::min(size - 1, decoder->message.size());
+    std::memcpy(text, decoder->message.data(), length);
+    text[length] = '\0';
+  }
+  return decoder->message.size();
+}
+
+lacerta_result lacerta_decoder_get_attribute(lacerta_decoder* decoder, uint32_t index, lacerta_attribute* attribute) {
+  return Locked(decoder, [&] {
+    if (!IsSized(attribute)) return BadStruct("attribute");
+    return lacerta::InvalidArgument("attribute " + std::to_string(index) + " is not there; the stream has positions alone");
+  });
+}
+
+lacerta_result lacerta_decoder_get_mesh_size(lacerta_decoder* decoder, int32_t level, uint32_t group, lacerta_mesh_size* mesh_size) {
+  return Locked(decoder, [&]() -> Status {
+    if (!IsSized(mesh_size)) return BadStruct("mesh_size");
+    LACERTA_RETURN_IF_ERROR(CheckGroup(group));
+    LACERTA_ASSIGN_OR_RETURN(const lacerta::LevelView view, decoder->stream.ViewOf(level));
+    mesh_size->num_vertices = static_cast<uint32_t>(view.positions.size());
+    mesh_size->num_triangles = static_cast<uint32_t>(view.triangles.size());
+    mesh_size->attributes = 0;
+    return Status();
+  });
+}
+
+lacerta_result lacerta_decoder_read_mesh(lacerta_decoder* decoder, int32_t level, uint32_t group, const lacerta_mesh_buffers* buffers) {
+  return Locked(decoder, [&]() -> Status {
+    if (!IsSized(buffers)) return BadStruct("buffers");
+    LACERTA_RETURN_IF_ERROR(CheckGroup(group));
+    LACERTA_ASSIGN_OR_RETURN(const lacerta::LevelView view, decoder->stream.ViewOf(level));
+    return WriteMesh(view, *buffers);
+  });
+}
+
+lacerta_result lacerta_decode_prefix(const void* bytes, size_t size, const lacerta_decoder_options* options, lacerta_decoder** decoder) {
+  const lacerta_result created = lacerta_decoder_create(options, decoder);
+  if (created != LACERTA_OK) return created;
+  int32_t level = -1;
+  lacerta_result result = lacerta_decoder_append(*decoder, bytes, size, &level);
+  if (result == LACERTA_OK) result = lacerta_decoder_finish(*decoder, &level);
+  if (level < 0 && result != LACERTA_OK && result != LACERTA_NEEDS_BASE) {
+    lacerta_decoder_destroy(*decoder);
+    *decoder = nullptr;
+  }
+  return result;
+}

@@ -1,0 +1,268 @@
+// LACERTA_mesh_progressive for glTF-Transform:
+//   const io = new NodeIO().registerExtensions([...ALL_EXTENSIONS, LacertaMeshProgressive]);
+// Progressive meshes hang on their nodes as ProgressiveMesh, out of sight of transforms that edit vertices, which would tear stream and
+// fallback apart; nodes, materials and all else can be edited. Writing puts the same bytes back. toLevel() makes ordinary meshes of them.
+import {Extension, ExtensionProperty, PropertyType, RefMap} from '@gltf-transform/core';
+import {extensionName, parseProgressive, progressivePrimitive} from './asset.js';
+import {Decoder, instantiate} from './decoder.js';
+import {compile} from './index.js';
+
+const kDraco = 'KHR_draco_mesh_compression';
+const kComponentBytes = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4};
+const kComponents = {SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT2: 4, MAT3: 9, MAT4: 16};
+
+/** All streams of a document: on its root. */
+export class ProgressiveStreams extends ExtensionProperty {
+  init() {
+    this.extensionName = extensionName;
+    this.propertyType = 'ProgressiveStreams';
+    this.parentTypes = [PropertyType.ROOT];
+  }
+  getDefaults() { return Object.assign(super.getDefaults(), {extension: null, data: null}); }
+  /** The extension's JSON, without bufferViews. */
+  getExtensionJson() { return this.get('extension'); }
+  setExtensionJson(json) { return this.set('extension', json); }
+  /** The segments of all streams. */
+  getData() { return this.get('data'); }
+  setData(bytes) { return this.set('data', bytes); }
+}
+
+/** A mesh whose primitives show streams: on a node, in the place of a Mesh. */
+export class ProgressiveMesh extends ExtensionProperty {
+  init() {
+    this.extensionName = extensionName;
+    this.propertyType = 'ProgressiveMesh';
+    this.parentTypes = [PropertyType.NODE];
+  }
+  getDefaults() { return Object.assign(super.getDefaults(), {primitives: [], materials: new RefMap()}); }
+  /** [{stream, group, def: the primitive's JSON, accessors: its fallback}] */
+  getPrimitives() { return this.get('primitives'); }
+  setPrimitives(primitives) { return this.set('primitives', primitives); }
+  getMaterial(primitive) { return this.getRefMap('materials', String(primitive)); }
+  setMaterial(primitive, material) { return this.setRefMap('materials', String(primitive), material); }
+}
+
+function viewBytes({json, resources}, index) {
+  const view = json.bufferViews[index], buffer = json.buffers[view.buffer];
+  const resource = buffer.uri === undefined ? resources['@glb.bin'] : resources[buffer.uri];
+  const begin = view.byteOffset ?? 0;
+  return resource.subarray(begin, Math.min(begin + view.byteLength, resource.length));
+}
+
+// An accessor of a fallback, with its bytes packed tightly.
+function takeAccessor(jsonDoc, index) {
+  const {bufferView, byteOffset = 0, sparse, ...def} = jsonDoc.json.accessors[index];
+  if (sparse) throw new Error(`${extensionName}: accessor ${index} of a fallback is sparse`);
+  if (bufferView === undefined) return {def};
+  const size = kComponentBytes[def.componentType] * kComponents[def.type], stride = jsonDoc.json.bufferViews[bufferView].byteStride ?? size;
+  const from = viewBytes(jsonDoc, bufferView), bytes = new Uint8Array(4 * Math.ceil(size * def.count / 4));
+  for (let i = 0; i < def.count; ++i) bytes.set(from.subarray(byteOffset + i * stride, byteOffset + i * stride + size), i * size);
+  return {def, bytes};
+}
+
+export class LacertaMeshProgressive extends Extension {
+  extensionName = extensionName;
+  prereadTypes = [PropertyType.BUFFER];
+  prewriteTypes = [PropertyType.BUFFER];
+  static EXTENSION_NAME = extensionName;
+  #taken;     // between preread and read
+
+  // Takes progressive meshes out of the JSON before anybody else sees it.
+  preread(context) {
+    const {jsonDoc} = context, {json} = jsonDoc;
+    const progressive = parseProgressive(json);
+    if (!progressive) return this;
+    const taken = this.#taken = {meshes: new Map(), nodes: new Map()};
+    const pieces = [progressive.data, progressive.refinements].filter(view => view !== undefined).map(view => viewBytes(jsonDoc, view));
+    taken.data = new Uint8Array(pieces.reduce((sum, piece) => sum + piece.length, 0));
+    pieces.reduce((at, piece) => (taken.data.set(piece, at), at + piece.length), 0);
+    const {data, refinements, ...extension} = json.extensions[extensionName];
+    taken.extension = extension;
+    delete json.extensions[extensionName];
+    (json.meshes ?? []).forEach((mesh, m) => {
+      const primitives = mesh.primitives.map(def => ({def, ...progressivePrimitive(def, progressive)}));
+      const marked = primitives.filter(({stream}) => stream !== undefined);
+      if (marked.length === 0) return;
+      if (marked.length < primitives.length || mesh.primitives.some(def => def.targets)) {
+        this.document.getLogger().warn(`[${extensionName}] mesh ${m} has other primitives beside progressive ones; it keeps its fallback alone.`);
+        for (const {def} of marked) delete def.extensions[extensionName];
+        return;
+      }
+      for (const primitive of primitives) {
+        const {attributes, indices} = primitive.def;
+        primitive.accessors = Object.fromEntries(Object.entries(attributes).map(([name, index]) => [name, takeAccessor(jsonDoc, index)]));
+        if (indices !== undefined) primitive.indices = takeAccessor(jsonDoc, indices);
+      }
+      taken.meshes.set(m, {name: mesh.name, extras: mesh.extras, primitives});
+      mesh.primitives = [];
+    });
+    (json.nodes ?? []).forEach((node, n) => {
+      if (!taken.meshes.has(node.mesh)) return;
+      taken.nodes.set(n, node.mesh);
+      delete node.mesh;
+    });
+    return this;
+  }
+
+  read(context) {
+    const taken = this.#taken;
+    if (!taken) return this;
+    const root = new ProgressiveStreams(this.document.getGraph(), 'streams').setExtensionJson(taken.extension).setData(taken.data);
+    this.document.getRoot().setExtension(extensionName, root);
+    const made = new Map();
+    for (const [m, {name, extras, primitives}] of taken.meshes) {
+      const mesh = new ProgressiveMesh(this.document.getGraph(), name ?? '').setPrimitives(primitives);
+      if (extras) mesh.setExtras(extras);
+      primitives.forEach(({def}, i) => { if (def.material !== undefined) mesh.setMaterial(i, context.materials[def.material]); });
+      made.set(m, mesh);
+      context.meshes[m].dispose();
+    }
+    for (const [n, m] of taken.nodes) context.nodes[n].setExtension(extensionName, made.get(m));
+    // What no other primitive wants needs no encoder when it is written.
+    const stillUsed = context.jsonDoc.json.meshes.some(({primitives}) => primitives.some(def => def.extensions?.[kDraco]));
+    for (const extension of this.document.getRoot().listExtensionsUsed()) {
+      if (extension.extensionName === kDraco && !stillUsed) extension.dispose();
+    }
+    this.#taken = undefined;
+    return this;
+  }
+
+  prewrite(context) {
+    const streams = this.document.getRoot().getExtension(extensionName);
+    if (!streams) return this;
+    const buffer = this.document.getRoot().listBuffers()[0] ?? this.document.createBuffer();
+    const views = context.otherBufferViews.get(buffer) ?? [];
+    context.otherBufferViews.set(buffer, views);
+    const add = bytes => { if (bytes && !views.includes(bytes)) views.push(bytes); };
+    // Last, so that the front of the file shows everything coarsely.
+    for (const mesh of this.#meshes()) for (const {accessors, indices} of mesh.getPrimitives()) [...Object.values(accessors), indices].forEach(accessor => add(accessor?.bytes));
+    add(streams.getData());
+    return this;
+  }
+
+  write(context) {
+    const streams = this.document.getRoot().getExtension(extensionName), {json} = context.jsonDoc;
+    if (!streams) return this;
+    const data = context.otherBufferViewsIndexMap.get(streams.getData());
+    json.extensions = {...json.extensions, [extensionName]: {...streams.getExtensionJson(), data}};
+    const progressive = parseProgressive(json);
+    const addAccessor = accessor => {
+      if (!accessor) return undefined;
+      json.accessors ??= [];
+      const bufferView = accessor.bytes && context.otherBufferViewsIndexMap.get(accessor.bytes);
+      json.accessors.push({...(bufferView === undefined ? {} : {bufferView}), ...accessor.def});
+      return json.accessors.length - 1;
+    };
+    const baseViews = new Map();
+    const baseView = stream => {
+      if (!baseViews.has(stream)) {
+        const {offset, length} = progressive.streams[stream].segments[0], view = json.bufferViews[data];
+        json.bufferViews.push({buffer: view.buffer, byteOffset: (view.byteOffset ?? 0) + offset, byteLength: length});
+        baseViews.set(stream, json.bufferViews.length - 1);
+      }
+      return baseViews.get(stream);
+    };
+    const written = new Map(), uses = new Set();
+    for (const node of this.document.getRoot().listNodes()) {
+      const mesh = node.getExtension(extensionName);
+      if (!mesh) continue;
+      if (!written.has(mesh)) {
+        const primitives = mesh.getPrimitives().map(({def, stream, accessors, indices}, i) => {
+          const material = mesh.getMaterial(i), extensions = {...def.extensions};
+          if (extensions[kDraco]) {
+            extensions[kDraco] = {...extensions[kDraco], bufferView: baseView(stream)};
+            uses.add(kDraco);
+          }
+          const {material: unused, ...rest} = def;
+          return {...rest, attributes: Object.fromEntries(Object.entries(accessors).map(([name, accessor]) => [name, addAccessor(accessor)])),
+            indices: addAccessor(indices), ...(material ? {material: context.materialIndexMap.get(material)} : {}), extensions};
+        });
+        json.meshes = [...(json.meshes ?? []), {...(mesh.getName() ? {name: mesh.getName()} : {}), primitives,
+          ...(Object.keys(mesh.getExtras()).length > 0 ? {extras: mesh.getExtras()} : {})}];
+        written.set(mesh, json.meshes.length - 1);
+      }
+      const def = json.nodes[context.nodeIndexMap.get(node)];
+      def.mesh = written.get(mesh);
+      delete def.extensions?.[extensionName];
+      if (def.extensions && Object.keys(def.extensions).length === 0) delete def.extensions;
+    }
+    for (const name of uses) {
+      for (const list of ['extensionsUsed', 'extensionsRequired']) json[list] = [...new Set([...(json[list] ?? []), name])];
+    }
+    return this;
+  }
+
+  #meshes() {
+    return new Set(this.document.getRoot().listNodes().map(node => node.getExtension(extensionName)).filter(Boolean));
+  }
+}
+
+// The base section as the host's Draco decodes it. module: of npm draco3d or draco3dgltf.
+function decodeBase(module, bytes) {
+  const decoder = new module.Decoder(), mesh = new module.Mesh(), buffer = new module.DecoderBuffer();
+  try {
+    buffer.Init(new Int8Array(bytes.buffer, bytes.byteOffset, bytes.length), bytes.length);
+    const status = decoder.DecodeBufferToMesh(buffer, mesh);
+    if (!status.ok()) throw new Error(`the base: ${status.error_msg()}`);
+    const points = mesh.num_points(), faces = mesh.num_faces(), memory = module._malloc(12 * Math.max(points, faces));
+    decoder.GetTrianglesUInt32Array(mesh, 12 * faces, memory);
+    const indices = new Uint32Array(module.HEAPU8.buffer, memory, 3 * faces).slice();
+    decoder.GetAttributeDataArrayForAllPoints(mesh, decoder.GetAttribute(mesh, decoder.GetAttributeId(mesh, module.POSITION)), module.DT_FLOAT32, 12 * points, memory);
+    const positions = new Float32Array(module.HEAPU8.buffer, memory, 3 * points).slice();
+    module._free(memory);
+    return {positions, indices};
+  } finally {
+    for (const object of [buffer, mesh, decoder]) module.destroy(object);
+  }
+}
+
+/**
+ * A transform that decodes all progressive meshes to a level (default: the finest that is there) and makes ordinary meshes of them; the extension
+ * is gone afterwards. draco3d: a decoder module, for bases in Draco form.
+ */
+export function toLevel({level = Infinity, draco3d} = {}) {
+  return async document => {
+    const root = document.getRoot(), streams = root.getExtension(extensionName);
+    if (!streams) return;
+    const wasm = await instantiate(await compile()), data = streams.getData();
+    const views = [{}], progressive = parseProgressive({bufferViews: views, extensions: {[extensionName]: {...streams.getExtensionJson(), data: 0}}});
+    const decoded = progressive.streams.map(stream => decodeStream(wasm, stream, data, level, draco3d));
+    const buffer = root.listBuffers()[0] ?? document.createBuffer(), made = new Map();
+    for (const node of root.listNodes()) {
+      const progressiveMesh = node.getExtension(extensionName);
+      if (!progressiveMesh) continue;
+      if (!made.has(progressiveMesh)) {
+        const mesh = document.createMesh(progressiveMesh.getName()).setExtras(progressiveMesh.getExtras());
+        progressiveMesh.getPrimitives().forEach(({stream}, i) => {
+          const {positions, normals, indices} = decoded[stream];
+          const accessor = (type, array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
+          const primitive = document.createPrimitive().setMaterial(progressiveMesh.getMaterial(i)).setIndices(accessor('SCALAR', indices))
+            .setAttribute('POSITION', accessor('VEC3', positions));
+          if (normals) primitive.setAttribute('NORMAL', accessor('VEC3', normals));
+          mesh.addPrimitive(primitive);
+        });
+        made.set(progressiveMesh, mesh);
+      }
+      node.setExtension(extensionName, null).setMesh(made.get(progressiveMesh));
+    }
+    streams.dispose();
+    for (const extension of root.listExtensionsUsed()) if (extension.extensionName === extensionName) extension.dispose();
+  };
+}
+
+function decodeStream(wasm, stream, data, level, draco3d) {
+  const decoder = new Decoder(wasm, {baseSize: stream.segments[0].length, maxLevel: Number.isFinite(level) ? level : -1});
+  try {
+    for (const {offset, length} of stream.segments) {
+      if (offset + length > data.length) break;  // trimmed
+      decoder.append(data.subarray(offset, offset + length));
+      if (!decoder.needsBase) continue;
+      if (!draco3d) throw new Error(`${extensionName}: the base is in Draco form; give a draco3d decoder module`);
+      const {positions, indices} = decodeBase(draco3d, decoder.baseSection());
+      decoder.setBase(positions, indices);
+    }
+    return decoder.read(decoder.progress().level, {normals: stream.normals === 'smooth'});
+  } finally {
+    decoder.dispose();
+  }
+}

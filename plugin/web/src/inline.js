@@ -1,0 +1,24 @@
+// The package with lacerta.wasm inside.
+import {loadBinary} from './binary_inline.js';
+import {Decoder, instantiate} from './decoder.js';
+import {DecoderPool} from './pool.js';
+
+export {Decoder, LacertaError} from './decoder.js';
+export {DecoderPool} from './pool.js';
+export {parseProgressive} from './asset.js';
+
+/** lacerta.wasm, compiled; once for all who ask. */
+let compiled;
+export function compile() {
+  return compiled ??= loadBinary().then(WebAssembly.compile);
+}
+
+/** A decoder for this thread. */
+export async function createDecoder(options) {
+  return new Decoder(await instantiate(await compile()), options);
+}
+
+/** Decoders in workers. */
+export async function createPool(options) {
+  return new DecoderPool(await compile(), options);
+}

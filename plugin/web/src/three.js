@@ -1,0 +1,245 @@
+// LACERTA_mesh_progressive for the GLTFLoader of three.js:
+//   loader.register(parser => new LacertaExtension(parser, {three: THREE}));
+//   const gltf = await loader.loadAsync('model.glb');     // shows its base
+//   gltf.userData.lacerta.addEventListener('level', ...);  // a ProgressiveModel
+// or, to show the base before the file has arrived, LacertaLoader.
+import {extensionName, parseProgressive, progressivePrimitive} from './asset.js';
+import {formatGlb, neededRanges, readHead} from './glb.js';
+import {createPool} from './inline.js';
+import {ProgressiveModel} from './progressive_model.js';
+import {transfer} from './transfer.js';
+
+let sharedPool;
+const poolOf = options => options.pool ?? (sharedPool ??= createPool({size: options.workers}));
+const hasData = (json, primitive) => primitive.extensions?.KHR_draco_mesh_compression !== undefined ||
+  json.accessors[primitive.attributes.POSITION]?.bufferView !== undefined;
+
+export class LacertaExtension {
+  name = extensionName;
+  #parser;
+  #options;
+  #progressive;
+  #problem;
+
+  /** options: {three: the module, dracoLoader (for assets without fallback), pool, workers, pixelError, maxTriangles, source, onModel} */
+  constructor(parser, options) {
+    this.#parser = parser;
+    this.#options = options;
+    try {
+      this.#progressive = parseProgressive(parser.json);
+    } catch (error) {
+      this.#problem = error.message;
+    }
+  }
+
+  beforeRoot() {
+    // Accessors without data describe the finest level; nobody needs its zeros.
+    const {json} = this.#parser;
+    for (const mesh of json.meshes ?? []) {
+      for (const primitive of mesh.primitives) {
+        if (primitive.extensions?.[extensionName] === undefined || hasData(json, primitive)) continue;
+        for (const accessor of [...Object.values(primitive.attributes), primitive.indices]) json.accessors[accessor].count = 3;
+      }
+    }
+    return null;
+  }
+
+  async afterRoot(gltf) {
+    if (!this.#progressive) {
+      if (this.#problem) (this.#options.onProblem ?? console.warn)(`${this.#problem}; the fallback is shown`);
+      return;
+    }
+    const model = new ProgressiveModel(this.#progressive, this.#options);
+    gltf.userData.lacerta = model;
+    this.#options.onModel?.(model);
+    const descriptions = this.#collect(gltf);
+    await model.begin(await poolOf(this.#options), descriptions, this.#options.three, this.#options);
+    const reading = model.read(this.#options.source ?? (target => this.#readParsed(target)));
+    // Objects without a fallback have nothing to show before.
+    const hidden = model.surfaces.filter((surface, i) => !descriptions[i].hasFallback);
+    await Promise.race([Promise.allSettled(hidden.map(surface => surface.when(0))), reading.then(() => new Promise(resolve => setTimeout(resolve, 2000)))]);
+  }
+
+  // Objects by stream. What cannot be a stream of ours is left to its fallback.
+  #collect(gltf) {
+    const {json, associations} = this.#parser, byStream = new Map();
+    for (const scene of gltf.scenes) {
+      scene.traverse(object => {
+        const {meshes, primitives} = associations.get(object) ?? {};
+        const primitive = object.isMesh && json.meshes[meshes]?.primitives[primitives ?? 0];
+        if (!primitive) return;
+        const found = progressivePrimitive(primitive, this.#progressive);
+        if (!found || found.group !== 0) return;
+        if (!byStream.has(found.stream)) byStream.set(found.stream, {index: found.stream, objects: [], hasFallback: hasData(json, primitive)});
+        byStream.get(found.stream).objects.push(object);
+      });
+    }
+    for (const {index, objects} of byStream.values()) if (this.#progressive.streams[index].normals === 'smooth') this.#smooth(objects);
+    const {dracoLoader} = this.#options;
+    const decodeBase = dracoLoader && (bytes => new Promise((resolve, reject) => {
+      dracoLoader.parse(bytes.slice().buffer, geometry => resolve({positions: geometry.attributes.position.array, indices: geometry.index.array}), reject);
+    }));
+    return [...byStream.values()].map(description => ({...description, decodeBase}));
+  }
+
+  // GLTFLoader shades meshes without normals flat; these have normals that follow from their shape.
+  #smooth(objects) {
+    const smoothed = new Map();
+    for (const object of objects) {
+      if (!object.geometry.attributes.normal && object.geometry.attributes.position.count > 3) object.geometry.computeVertexNormals();
+      if (!object.material.flatShading) continue;
+      if (!smoothed.has(object.material)) smoothed.set(object.material, Object.assign(object.material.clone(), {flatShading: false}));
+      object.material = smoothed.get(object.material);
+    }
+  }
+
+  // The data of a file that is there as a whole; refinements in a file of their own come over the network.
+  async #readParsed(model) {
+    const {data, refinements} = this.#progressive, {json} = this.#parser;
+    const bytes = new Uint8Array(await this.#parser.getDependency('bufferView', data));
+    model.push(0, bytes);
+    if (refinements === undefined) return;
+    const view = json.bufferViews[refinements], begin = view.byteOffset ?? 0;
+    const url = new URL(json.buffers[view.buffer].uri, new URL(this.#parser.options.path || '.', globalThis.location?.href ?? 'file:///')).href;
+    await transfer(url, (offset, piece) => model.push(bytes.length + offset - begin, piece), {begin, end: begin + view.byteLength, signal: model.signal});
+  }
+}
+
+/** Loads GLB files so that their base is on the screen as soon as its bytes are there. */
+export class LacertaLoader {
+  #makeLoader;
+  #options;
+
+  /** makeLoader: () => a GLTFLoader with whatever it needs (DRACOLoader, ...). options: as for LacertaExtension. */
+  constructor(makeLoader, options) {
+    this.#makeLoader = makeLoader;
+    this.#options = options;
+  }
+
+  /**
+   * Resolves to the glTF when its base can be shown. mode: 'stream', one request read as it arrives, or 'range', a request per segment, most valuable
+   * first. Rejects where there is not even a base. gltf.userData.lacerta is undefined for assets without our extension.
+   */
+  load(url, {mode = 'stream', signal, ...transferOptions} = {}) {
+    return mode === 'range' ? this.#loadRanges(url, {signal, ...transferOptions}) : this.#loadStream(url, {signal, ...transferOptions});
+  }
+
+  #parse(buffer, url, options) {
+    const loader = this.#makeLoader();
+    loader.register(parser => new LacertaExtension(parser, {...this.#options, ...options}));
+    return loader.parseAsync(buffer, new URL('.', new URL(url, globalThis.location?.href)).href);
+  }
+
+  async #loadStream(url, options) {
+    const body = new GrowingBytes();
+    let head, needed = Infinity, dataAt = 0, model, started, resolveStarted, ended;
+    const isStarted = new Promise(resolve => { resolveStarted = resolve; });
+    const stop = new AbortController();
+    options.signal?.addEventListener('abort', () => { stop.abort(options.signal.reason); model?.abort(); });
+    const onBytes = (offset, bytes) => {
+      if (model) return model.push(offset - dataAt, bytes);
+      body.append(bytes);
+      head ??= readHead(body.bytes);
+      if (!head || started) return;
+      const progressive = safely(() => parseProgressive(head.json));
+      if (!progressive || head.json.bufferViews[progressive.data].buffer !== 0) return;  // loaded as a whole
+      dataAt = head.binOffset + (head.json.bufferViews[progressive.data].byteOffset ?? 0);
+      needed = head.binOffset + Math.max(...neededRanges(head.json, progressive).map(range => range.end));
+      if (body.length >= needed) resolveStarted(started = true);
+    };
+    const read = transfer(url, onBytes, {...options, signal: stop.signal});
+    read.then(() => { ended = true; }, () => {});
+    await Promise.race([isStarted, read]);
+    if (!started) return this.#parse(body.bytes.slice().buffer, url);
+    const source = async (target, signal) => {
+      if (!model) {
+        model = target;
+        model.push(0, body.bytes.subarray(dataAt));
+        signal.addEventListener('abort', () => stop.abort(signal.reason), {once: true});
+        return read;
+      }
+      return transfer(url, (offset, bytes) => target.push(offset - dataAt, bytes), {...options, begin: dataAt + firstGap(target), signal});
+    };
+    void ended;
+    return this.#parse(formatGlb(head.json, body.bytes.slice(head.binOffset, needed)), url, {source});
+  }
+
+  async #loadRanges(url, options) {
+    const body = new GrowingBytes();
+    const get = (begin, end, onBytes, signal = options.signal) => transfer(url, onBytes, {...options, begin, end, signal});
+    await get(0, 16384, (offset, bytes) => body.append(bytes));
+    while (readHead(body.bytes) === undefined && body.length > 0) {
+      const before = body.length;
+      await get(before, before * 4, (offset, bytes) => body.append(bytes));
+      if (body.length === before) break;
+    }
+    const head = readHead(body.bytes), progressive = head && safely(() => parseProgressive(head.json));
+    if (!progressive || head.json.bufferViews[progressive.data].buffer !== 0) {
+      await get(body.length, undefined, (offset, bytes) => body.append(bytes));
+      return this.#parse(body.bytes.slice().buffer, url);
+    }
+    const {binOffset} = head, ranges = neededRanges(head.json, progressive);
+    const front = new Uint8Array(Math.max(...ranges.map(range => range.end)));
+    const fill = (offset, bytes) => front.set(bytes.subarray(0, Math.max(0, front.length - offset)), offset);
+    fill(0, body.bytes.subarray(binOffset));
+    for (const {begin, end} of joined(ranges)) {
+      const from = Math.max(begin, body.length - binOffset);
+      if (from < end) await get(binOffset + from, binOffset + end, (offset, bytes) => fill(offset - binOffset, bytes));
+    }
+    const view = head.json.bufferViews[progressive.data], dataAt = binOffset + (view.byteOffset ?? 0);
+    const bases = progressive.order.filter(segment => segment.part === 0).reduce((end, base) => Math.max(end, base.offset + base.length), 0);
+    const source = async (model, signal) => {
+      model.push(0, front.subarray(dataAt - binOffset, dataAt - binOffset + bases));
+      model.push(0, body.bytes.subarray(dataAt));
+      for (let next; !signal.aborted && !model.feed.isWhole; ) {
+        next = model.nextSegment();
+        if (!next) {  // nothing is worth it until the view changes
+          await new Promise(resolve => setTimeout(resolve, 100));
+          continue;
+        }
+        const begin = dataAt + next.offset + model.feed.received(next);
+        const got = await get(begin, dataAt + next.offset + next.length, (offset, bytes) => model.push(offset - dataAt, bytes), signal);
+        if (got === 0 && next.length > 0) return;  // the file was trimmed
+      }
+    };
+    return this.#parse(formatGlb(head.json, front), url, {source});
+  }
+}
+
+class GrowingBytes {
+  #buffer = new Uint8Array(1 << 16);
+  length = 0;
+  append(bytes) {
+    if (this.length + bytes.length > this.#buffer.length) {
+      const larger = new Uint8Array(Math.max(2 * this.#buffer.length, this.length + bytes.length));
+      larger.set(this.bytes);
+      this.#buffer = larger;
+    }
+    this.#buffer.set(bytes, this.length);
+    this.length += bytes.length;
+  }
+  get bytes() { return this.#buffer.subarray(0, this.length); }
+}
+
+const safely = call => { try { return call(); } catch { return undefined; } };
+
+// Ranges in order, those that touch or lie close as one.
+function joined(ranges) {
+  const result = [];
+  for (const range of [...ranges].sort((a, b) => a.begin - b.begin)) {
+    const last = result.at(-1);
+    if (last && range.begin <= last.end + 4096) last.end = Math.max(last.end, range.end);
+    else result.push({...range});
+  }
+  return result;
+}
+
+// Where the first segment that is not whole goes on.
+function firstGap(model) {
+  const {feed} = model;
+  let gap = Infinity;
+  for (const surface of model.surfaces) {
+    for (const segment of surface.stream.segments) if (!feed.isComplete(segment)) gap = Math.min(gap, segment.offset + feed.received(segment));
+  }
+  return gap === Infinity ? 0 : gap;
+}

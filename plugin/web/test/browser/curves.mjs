@@ -1,0 +1,21 @@
+// The error on the screen against time, as a picture: drawn as SVG and photographed, so that no plotting program is needed.
+export async function drawCurves(page, rows, path) {
+  const width = 640, height = 400, left = 60, bottom = 50, top = 30, right = 20;
+  const end = 1.05 * Math.max(...rows.map(row => row.milliseconds)), low = Math.min(...rows.map(row => row.psnr)) - 5, high = Math.max(...rows.map(row => row.psnr)) + 3;
+  const x = time => left + (width - left - right) * time / end, y = psnr => height - bottom - (height - bottom - top) * (psnr - low) / (high - low);
+  const steps = what => {
+    const points = rows.filter(row => row.what === what);
+    return points.map((row, i) => `${i === 0 ? `M${x(row.milliseconds)},${height - bottom}` : ''}V${y(row.psnr)}H${x(points[i + 1]?.milliseconds ?? end)}`).join('');
+  };
+  const ticks = (from, to, count) => Array.from({length: count + 1}, (unused, i) => from + (to - from) * i / count);
+  const text = (at, down, anchor, words) => `<text x="${at}" y="${down}" text-anchor="${anchor}">${words}</text>`;
+  const svg = `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" style="background:#fff" font-family="sans-serif" font-size="12">
+    ${ticks(0, end, 6).map(time => text(x(time), height - bottom + 16, 'middle', (time / 1000).toFixed(1))).join('')}
+    ${ticks(low, high, 6).map(psnr => text(left - 6, y(psnr) + 4, 'end', psnr.toFixed(0)) + `<path d="M${left},${y(psnr)}H${width - right}" stroke="#ddd"/>`).join('')}
+    <path d="${steps('lacerta')}" fill="none" stroke="#0a7d33" stroke-width="2"/><path d="${steps('draco')}" fill="none" stroke="#b3261e" stroke-width="2"/>
+    ${text((left + width) / 2, height - 12, 'middle', 'seconds after the request, over 100 kB/s')}${text(left, 18, 'start', 'dB on the screen: Lacerta green, Draco of the same final error red')}</svg>`;
+  await page.setViewportSize({width, height});
+  await page.setContent(`<body style="margin:0">${svg}</body>`);
+  await page.screenshot({path});
+  await page.close();
+}

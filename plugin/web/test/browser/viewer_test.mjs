@@ -1,0 +1,173 @@
+// The viewer in Chromium: what shows when over a slow link, smoothness, memory, and what happens when the network does not behave.
+import assert from 'node:assert/strict';
+import {readFileSync, writeFileSync} from 'node:fs';
+import {join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {drawCurves} from './curves.mjs';
+import {loadWhole, openViewer, pictures, scanAsset} from './support.mjs';
+import {root, scratch} from '../node/support.mjs';
+
+let viewer, page, asset;
+before(async () => {
+  asset = await scanAsset(85);
+  viewer = await openViewer();
+  page = viewer.page;
+  await loadWhole(page, asset.file);  // warms the decoders up
+  await page.evaluate(url => window.viewer.showDraco(url), asset.twinFile);
+});
+after(() => viewer?.close());
+
+const problem = () => page.textContent('#problem');
+
+test('over 100 kB/s the base shows within half a second, and the surface sharpens long before Draco shows anything', async () => {
+  // A page of its own, and small: software rendering shall not be what is measured. Decoders are warm, the link is slow.
+  const fresh = await openViewer({width: 160, height: 160});
+  await fresh.page.evaluate(`(async () => { await window.viewer.showDraco('${asset.twinFile}'); })()`);
+  await fresh.page.evaluate(`(async () => { await window.viewer.show('${asset.file}', {mode: 'stream', name: 'warm'}); })()`);
+  // The best of three for both: other programs take their share of the machine.
+  let history, draco = Infinity;
+  for (let run = 0; run < 3; ++run) {
+    const levels = await loadWhole(fresh.page, `${asset.file}?kbps=100`);
+    if (!history || levels.at(-1).milliseconds < history.at(-1).milliseconds) history = levels;
+    await fresh.page.evaluate(url => window.viewer.showDraco(url), `${asset.twinFile}?kbps=100`);
+    draco = Math.min(draco, await fresh.page.evaluate('window.draco_shown'));
+  }
+  const {min, max, errors} = await fresh.page.evaluate('(({min, max, errors}) => ({min, max, errors}))(window.model.surfaces[0].stream)');
+  await fresh.close();
+  const diagonal = Math.hypot(...max.map((x, axis) => x - min[axis]));
+  const levels = history.filter(({level}) => level >= 0);
+  const rows = history.map(({level, error, milliseconds}) => ({what: 'lacerta', level: Math.max(level, 0), error: error ?? errors[0], milliseconds}));
+  rows.push({what: 'draco', level: 0, error: errors.at(-1), milliseconds: draco});
+  const psnr = error => (20 * Math.log10(diagonal / error)).toFixed(2);
+  const table = rows.map(({what, level, error, milliseconds}) => `${asset.name},${what},${level},${error},${psnr(error)},${milliseconds.toFixed(0)}`);
+  const target = process.env.LACERTA_UPDATE_RESULTS ? join(root, 'docs/results') : pictures;
+  writeFileSync(join(target, 'streaming_curve.csv'), `mesh,file,level,error,psnr,milliseconds\n${table.join('\n')}\n`);
+  await drawCurves(await page.context().newPage(), rows.map(row => ({...row, psnr: Number(psnr(row.error))})), join(target, 'streaming_curve.png'));
+  assert.ok(history[0].milliseconds < 500, `base after ${history[0].milliseconds} ms`);
+  const good = levels.find(({error}) => 20 * Math.log10(diagonal / error) >= 65);
+  // A third of Draco's time is the aim, at sizes where the link and not the start of a request counts; half of it has to be there always.
+  assert.ok(good.milliseconds < draco / 2, `65 dB after ${good.milliseconds} ms, Draco after ${draco} ms`);
+});
+
+test('each level has its picture, none is empty, and the finest differs from the base', async () => {
+  await loadWhole(page, asset.file);
+  const last = await page.evaluate('window.model.surfaces[0].lastPart');
+  let sizes = [];
+  for (let level = 0; level <= last; ++level) {
+    await page.evaluate(part => window.model.setMaxLevel(part), level);
+    await page.waitForFunction(part => window.model.surfaces[0].part === part, level);
+    await page.waitForTimeout(150);
+    const picture = await page.locator('#left canvas').screenshot({path: join(pictures, `level_${level}.png`)});
+    sizes.push(picture.length);
+  }
+  assert.ok(last >= 3);
+  assert.ok(sizes.every(size => size > 3000), `${sizes}`);
+  assert.notEqual(sizes[0], sizes.at(-1));
+});
+
+test('levels go down with the distance and come back', async () => {
+  await loadWhole(page, asset.file);
+  const seenFrom = factor => page.evaluate(async times => {
+    const {model, viewer} = window;
+    const {camera} = viewer.left;
+    const center = model.surfaces[0].stream.min.map((x, axis) => (x + model.surfaces[0].stream.max[axis]) / 2);
+    const size = Math.hypot(...model.surfaces[0].stream.max.map((x, axis) => x - model.surfaces[0].stream.min[axis]));
+    camera.position.set(center[0], center[1], center[2] + size * times);
+    camera.lookAt(...center);
+    camera.far = size * times * 4;
+    camera.updateProjectionMatrix();
+    camera.updateMatrixWorld();
+    model.update(camera, 480);
+    for (let before; before !== model.surfaces[0].part;) {
+      before = model.surfaces[0].part;
+      await new Promise(resolve => setTimeout(resolve, 700));
+    }
+    return model.surfaces[0].part;
+  }, factor);
+  const near = await seenFrom(0.8), far = await seenFrom(100), again = await seenFrom(0.8);
+  assert.ok(near > far, `${near} near, ${far} far`);
+  assert.equal(again, near);
+});
+
+test('one request per segment gives the same levels', async () => {
+  const history = await loadWhole(page, asset.file, 'range');
+  assert.equal(history.at(-1).level, await page.evaluate('window.model.surfaces[0].lastPart'));
+  assert.equal(await problem(), '');
+});
+
+test('no task over 50 ms on the main thread while 100k triangles refine', async () => {
+  const small = await openViewer({width: 160, height: 160});
+  try {
+    await loadWhole(small.page, asset.file);
+    await small.page.evaluate(`window.long_tasks = [];
+      new PerformanceObserver(list => window.long_tasks.push(...list.getEntries().map(entry => entry.duration))).observe({entryTypes: ['longtask']});
+      window.viewer.clear()`);
+    const history = await loadWhole(small.page, `${asset.file}?kbps=40`);
+    await small.page.waitForTimeout(200);
+    assert.ok(history.some(({triangles}) => triangles >= 100_000), JSON.stringify(history));
+    const tasks = await small.page.evaluate('window.long_tasks');
+    assert.ok(tasks.length === 0, `long tasks: ${tasks.map(Math.round)} ms`);
+  } finally {
+    await small.close();
+  }
+});
+
+test('100 times loaded and disposed leaves nothing behind', async () => {
+  await page.evaluate('window.viewer.clear()');
+  const cycle = count => page.evaluate(async ([url, times]) => {
+    for (let i = 0; i < times; ++i) {
+      await window.viewer.show(url, {mode: 'stream', name: 'cycle'});
+      await window.model.whenLevel(2);
+      window.viewer.clear();
+    }
+    await new Promise(resolve => setTimeout(resolve, 200));
+    for (let i = 0; i < 3; ++i) {
+      window.gc();
+      await new Promise(resolve => setTimeout(resolve, 100));
+    }
+    return {heap: performance.memory.usedJSHeapSize, geometries: window.viewer.renderer.info.memory.geometries, streams: (await window.viewer.pool()).streams};
+  }, [asset.file, count]);
+  const first = await cycle(10), last = await cycle(100);
+  assert.equal(last.geometries, 0);
+  assert.equal(last.streams, 0);
+  assert.ok(last.heap - first.heap < 5e6, `${first.heap} bytes after 10, ${last.heap} after 110`);
+});
+
+test('a truncated, a damaged, a missing and a stalled file each leave the last good level and one message', async () => {
+  const bytes = readFileSync(asset.glb);
+  writeFileSync(join(scratch, 'truncated.glb'), bytes.subarray(0, Math.floor(bytes.length * 0.6)));
+  const damaged = Buffer.from(bytes);
+  damaged[Math.floor(bytes.length * 0.8)] ^= 0xff;
+  writeFileSync(join(scratch, 'damaged.glb'), damaged);
+  const messages = () => page.evaluate(async () => {
+    const told = [];
+    window.model?.addEventListener('problem', ({detail}) => told.push(detail.message));
+    await new Promise(resolve => setTimeout(resolve, 1500));
+    return {told, part: window.model?.surfaces[0]?.part, shown: window.viewer.renderer.info.render.triangles};
+  });
+
+  await page.evaluate(() => window.viewer.show('/assets/truncated.glb', {mode: 'stream', name: 'truncated'}));
+  let {part, shown} = await messages();
+  assert.ok(part >= 0 && part < await page.evaluate('window.model.surfaces[0].lastPart') && shown > 0);
+
+  await page.evaluate(() => window.viewer.show('/assets/damaged.glb', {mode: 'stream', name: 'damaged'}));
+  ({part, shown} = await messages());
+  assert.ok(part >= 0 && part < await page.evaluate('window.model.surfaces[0].lastPart') && shown > 0);
+  assert.match(await problem(), /level \d+ cannot be shown .*; level \d+ stays/);
+
+  await page.evaluate(() => window.viewer.show('/assets/nowhere.glb', {mode: 'stream', name: 'missing'}));
+  assert.match(await problem(), /nowhere\.glb: not found \(404\)/);
+});
+
+test('a download that is stopped goes on where it ended', async () => {
+  await page.evaluate(url => window.viewer.show(url, {mode: 'stream', name: 'stopped'}), `${asset.file}?kbps=20`);
+  await page.evaluate('window.model.abort()');
+  const before = await page.evaluate('window.model.received');
+  await page.waitForTimeout(500);
+  assert.equal(await page.evaluate('window.model.received'), before);
+  assert.equal(await problem(), '');
+  await page.evaluate('window.model.resume()');
+  await page.waitForFunction('window.model.surfaces[0].isComplete', null, {timeout: 20000});
+});
+
+test('no error was thrown in the page', () => assert.deepEqual(viewer.errors, []));
