@@ -157,16 +157,33 @@ uint32_t AccessorData::Uint(uint64_t element, uint32_t component) const {
   return Load<uint32_t>(bytes, i);
 }
 
-AccessorData MakeFloatAccessor(const std::vector<Vec3f>& values) {
+AccessorData MakeFloatAccessor(const std::vector<float>& values, uint32_t components) {
   AccessorData data;
-  data.components = 3;
-  data.count = values.size();
-  data.bytes.resize(values.size() * 12);
-  for (size_t i = 0; i < values.size(); ++i) {
-    const float xyz[3] = {values[i].x, values[i].y, values[i].z};
-    std::memcpy(data.bytes.data() + 12 * i, xyz, sizeof(xyz));
-  }
+  data.components = components;
+  data.count = values.size() / components;
+  data.bytes.resize(values.size() * sizeof(float));
+  if (!values.empty()) std::memcpy(data.bytes.data(), values.data(), data.bytes.size());
   return data;
+}
+
+AccessorData MakeFloatAccessor(const std::vector<Vec3f>& values) {
+  std::vector<float> components;
+  components.reserve(3 * values.size());
+  for (const Vec3f& value : values) components.insert(components.end(), {value.x, value.y, value.z});
+  return MakeFloatAccessor(components, 3);
+}
+
+std::vector<ComponentRange> ComponentRanges(const AccessorData& data) {
+  std::vector<ComponentRange> ranges;
+  for (uint32_t c = 0; c < data.components && data.count > 0; ++c) {
+    ComponentRange range{data.Float(0, c), data.Float(0, c)};
+    for (uint64_t i = 1; i < data.count; ++i) {
+      range.low = std::min(range.low, data.Float(i, c));
+      range.high = std::max(range.high, data.Float(i, c));
+    }
+    ranges.push_back(range);
+  }
+  return ranges;
 }
 
 AccessorData MakeIndexAccessor(const std::vector<Triangle>& triangles, uint64_t num_vertices) {

@@ -34,9 +34,17 @@ struct AccessorData {
   uint32_t Uint(uint64_t element, uint32_t component) const;  // of an unsigned integer type
 };
 
+// #V x components, row after row.
+AccessorData MakeFloatAccessor(const std::vector<float>& values, uint32_t components);
 AccessorData MakeFloatAccessor(const std::vector<Vec3f>& values);
 // 16 bits where `num_vertices` allows it, else 32.
 AccessorData MakeIndexAccessor(const std::vector<Triangle>& triangles, uint64_t num_vertices);
+
+struct ComponentRange {
+  float low = 0.0f, high = 0.0f;
+};
+// The least and the largest value of every component; empty where there are no elements.
+std::vector<ComponentRange> ComponentRanges(const AccessorData& data);
 
 // Reads accessors[index]: strides, sparse substitution and normalization; matrices are refused with kUnsupported, as is
 // an accessor without any data. Messages begin with "accessor N".

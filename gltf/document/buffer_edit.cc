@@ -53,15 +53,9 @@ const char* TypeName(uint32_t components) {
 void AddBounds(const AccessorData& data, Json* accessor) {
   Json min = Json::array();
   Json max = Json::array();
-  for (uint32_t c = 0; c < data.components && data.count > 0; ++c) {
-    float low = data.Float(0, c);
-    float high = low;
-    for (uint64_t i = 1; i < data.count; ++i) {
-      low = std::min(low, data.Float(i, c));
-      high = std::max(high, data.Float(i, c));
-    }
-    min.push_back(low);
-    max.push_back(high);
+  for (const ComponentRange& range : ComponentRanges(data)) {
+    min.push_back(range.low);
+    max.push_back(range.high);
   }
   (*accessor)["min"] = std::move(min);
   (*accessor)["max"] = std::move(max);

@@ -14,9 +14,13 @@
 namespace lacerta {
 namespace {
 
-// Positions go to Draco as integers of this lattice with a step of 1, because its options carry floats as text of six
-// decimals. The four numbers mark the place in the stream where the true lattice is then written.
-constexpr std::array<float, 3> kMark = {-17.0f, -29.0f, -43.0f};
+// What is rounded to a lattice goes to Draco as integers of this one with a step of 1, because its options carry floats
+// as text of six decimals. The numbers, others for each attribute, mark the place in the stream where the true lattice
+// is then written.
+std::array<float, 4> MarkOf(size_t attribute) {
+  const float shift = 100.0f * static_cast<float>(attribute);
+  return {-17.0f - shift, -29.0f - shift, -43.0f - shift, -61.0f - shift};
+}
 
 bool BeginsWith(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
 
@@ -46,23 +50,27 @@ draco::DataType DracoDataType(ComponentType type) {
   return draco::DT_INVALID;
 }
 
-bool IsFloatPosition(const Attribute& attribute) {
-  return attribute.name == "POSITION" && attribute.data.type == ComponentType::kFloat;
+// Null where the values are not rounded to one.
+const Lattice* LatticeOf(const Attribute& attribute, const DracoPrecision& precision) {
+  if (attribute.data.type != ComponentType::kFloat) return nullptr;
+  if (attribute.name == "POSITION") return &precision.positions;
+  const auto found = precision.lattices.find(attribute.name);
+  return found != precision.lattices.end() ? &found->second : nullptr;
 }
 
-int BitsOf(const Attribute& attribute, const DracoPrecision& precision) {
-  const auto found = precision.bits.find(attribute.name);
-  return attribute.data.type == ComponentType::kFloat && found != precision.bits.end() ? found->second : 0;
+// 0 where the values are not rounded as directions.
+int OctahedralBits(const Attribute& attribute, const DracoPrecision& precision) {
+  const AccessorData& data = attribute.data;
+  const bool is_normal = attribute.name == "NORMAL" && data.components == 3 && data.type == ComponentType::kFloat;
+  return is_normal ? precision.normal_bits : 0;
 }
 
-bool IsOctahedral(const Attribute& attribute) { return attribute.name == "NORMAL" && attribute.data.components == 3; }
-
-Bytes MarkedPositions(const AccessorData& rounded, const Lattice& lattice) {
+Bytes MarkedValues(const AccessorData& rounded, const Lattice& lattice, const std::array<float, 4>& mark) {
   Bytes bytes(rounded.bytes.size());
   for (uint64_t i = 0; i < rounded.count; ++i) {
-    for (uint32_t c = 0; c < 3; ++c) {
-      const float value = static_cast<float>(lattice.Round(rounded.Float(i, c), c)) + kMark[c];
-      std::memcpy(bytes.data() + (3 * i + c) * sizeof(float), &value, sizeof(value));
+    for (uint32_t c = 0; c < rounded.components; ++c) {
+      const float value = static_cast<float>(lattice.Round(rounded.Float(i, c), c)) + mark[c];
+      std::memcpy(bytes.data() + (rounded.components * i + c) * sizeof(float), &value, sizeof(value));
     }
   }
   return bytes;
@@ -85,7 +93,9 @@ StatusOr<std::unique_ptr<draco::Mesh>> ToDraco(const Primitive& rounded, const D
                      data.normalized, static_cast<int64_t>(size), 0);
     const int id = mesh->AddAttribute(description, true, static_cast<uint32_t>(data.count));
     if (id < 0) return Unsupported("Draco refuses the attribute " + attribute.name);
-    const Bytes& bytes = IsFloatPosition(attribute) ? MarkedPositions(data, precision.positions) : data.bytes;
+    const Lattice* lattice = LatticeOf(attribute, precision);
+    const Bytes& bytes =
+        lattice != nullptr ? MarkedValues(data, *lattice, MarkOf(static_cast<size_t>(id))) : data.bytes;
     mesh->attribute(id)->buffer()->Write(0, bytes.data(), bytes.size());
   }
   if (!mesh->DeduplicateAttributeValues()) return Unsupported("Draco refuses the attributes");
@@ -106,17 +116,23 @@ bool AllFinite(const Attribute& attribute) {
 float MarkRange(const Lattice& lattice) { return static_cast<float>((int64_t{1} << lattice.bits) - 1); }
 
 // Writes the true lattice over the mark.
-Status SetLattice(const Lattice& lattice, Bytes* stream) {
-  const std::array<float, 4> mark = {kMark[0], kMark[1], kMark[2], MarkRange(lattice)};
-  const std::array<float, 4> wanted = {lattice.origin[0], lattice.origin[1], lattice.origin[2], lattice.range};
+Status SetLattice(const Lattice& lattice, size_t attribute, uint32_t components, Bytes* stream) {
+  std::array<float, 5> mark = {};
+  std::array<float, 5> wanted = {};
+  for (uint32_t c = 0; c < components; ++c) {
+    mark[c] = MarkOf(attribute)[c];
+    wanted[c] = lattice.origin[c];
+  }
+  mark[components] = MarkRange(lattice);
+  wanted[components] = lattice.range;
   uint8_t pattern[sizeof(mark)];
   std::memcpy(pattern, mark.data(), sizeof(mark));
-  const auto found = std::search(stream->begin(), stream->end(), std::begin(pattern), std::end(pattern));
-  if (found == stream->end() ||
-      std::search(found + 1, stream->end(), std::begin(pattern), std::end(pattern)) != stream->end()) {
-    return InternalError("the Draco stream does not tell where its lattice of positions is");
+  const auto end = std::begin(pattern) + static_cast<std::ptrdiff_t>((components + 1) * sizeof(float));
+  const auto found = std::search(stream->begin(), stream->end(), std::begin(pattern), end);
+  if (found == stream->end() || std::search(found + 1, stream->end(), std::begin(pattern), end) != stream->end()) {
+    return InternalError("the Draco stream does not tell where its lattices are");
   }
-  std::memcpy(stream->data() + (found - stream->begin()), wanted.data(), sizeof(wanted));
+  std::memcpy(stream->data() + (found - stream->begin()), wanted.data(), (components + 1) * sizeof(float));
   return Status();
 }
 
@@ -132,15 +148,13 @@ StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive,
     encoder.SetEncodingSubmethod(connectivity == Connectivity::kValence ? draco::MESH_EDGEBREAKER_VALENCE_ENCODING
                                                                         : draco::MESH_EDGEBREAKER_STANDARD_ENCODING);
   }
-  bool has_lattice = false;
   for (size_t i = 0; i < primitive.attributes.size(); ++i) {
     const Attribute& attribute = primitive.attributes[i];
     const int id = static_cast<int>(i);
-    if (IsFloatPosition(attribute)) {
-      encoder.SetAttributeExplicitQuantization(id, precision.positions.bits, 3, kMark.data(),
-                                               MarkRange(precision.positions));
-      has_lattice = true;
-    } else if (const int bits = BitsOf(attribute, precision); bits > 0) {
+    if (const Lattice* lattice = LatticeOf(attribute, precision); lattice != nullptr) {
+      encoder.SetAttributeExplicitQuantization(id, lattice->bits, static_cast<int>(attribute.data.components),
+                                               MarkOf(i).data(), MarkRange(*lattice));
+    } else if (const int bits = OctahedralBits(attribute, precision); bits > 0) {
       encoder.SetAttributeQuantization(id, bits);
     }
   }
@@ -148,7 +162,11 @@ StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive,
   const draco::Status status = encoder.EncodeToBuffer(&buffer);
   if (!status.ok()) return Unsupported("Draco cannot encode the primitive (" + status.error_msg_string() + ")");
   Bytes bytes(buffer.data(), buffer.data() + buffer.size());
-  if (has_lattice) LACERTA_RETURN_IF_ERROR(SetLattice(precision.positions, &bytes));
+  for (size_t i = 0; i < primitive.attributes.size(); ++i) {
+    const Lattice* lattice = LatticeOf(primitive.attributes[i], precision);
+    if (lattice == nullptr) continue;
+    LACERTA_RETURN_IF_ERROR(SetLattice(*lattice, i, primitive.attributes[i].data.components, &bytes));
+  }
   return bytes;
 }
 
@@ -163,11 +181,10 @@ Lattice PositionLattice(const Vec3f& min, const Vec3f& max, int bits) {
 Primitive RoundAttributes(const Primitive& primitive, const DracoPrecision& precision) {
   Primitive rounded = primitive;
   for (Attribute& attribute : rounded.attributes) {
-    if (IsFloatPosition(attribute)) {
-      attribute.data = RoundToLattice(attribute.data, precision.positions);
-    } else if (const int bits = BitsOf(attribute, precision); bits > 0) {
-      attribute.data = IsOctahedral(attribute) ? RoundOctahedral(attribute.data, bits)
-                                               : RoundToLattice(attribute.data, FitLattice(attribute.data, bits));
+    if (const Lattice* lattice = LatticeOf(attribute, precision); lattice != nullptr) {
+      attribute.data = RoundToLattice(attribute.data, *lattice);
+    } else if (const int bits = OctahedralBits(attribute, precision); bits > 0) {
+      attribute.data = RoundOctahedral(attribute.data, bits);
     }
   }
   return rounded;

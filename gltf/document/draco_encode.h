@@ -20,9 +20,9 @@ namespace lacerta {
 // opens along their common borders.
 struct DracoPrecision {
   Lattice positions;
-  // Bits of the other float attributes, by name: octahedral for NORMAL (2..30), else of their range
-  // (1..kMostLatticeBits). What is not in here stays exact, as integers do.
-  std::map<std::string, int> bits;
+  // Of the other float attributes, by name. What is not in here stays exact, as integers do.
+  std::map<std::string, Lattice> lattices;
+  int normal_bits = 0;  // octahedral, of NORMAL: 2..30; 0: exact
 };
 
 // The lattice over a box with steps of its longest side / (2^bits - 1).

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 namespace lacerta {
 namespace {
@@ -30,17 +31,21 @@ Lattice FitLattice(const AccessorData& data, int bits) {
   Lattice lattice;
   lattice.bits = bits;
   float range = 0.0f;
-  for (uint32_t c = 0; c < data.components && data.count > 0; ++c) {
-    float low = data.Float(0, c);
-    float high = low;
-    for (uint64_t i = 1; i < data.count; ++i) {
-      low = std::min(low, data.Float(i, c));
-      high = std::max(high, data.Float(i, c));
-    }
-    lattice.origin[c] = low;
-    range = std::max(range, high - low);
+  const std::vector<ComponentRange> ranges = ComponentRanges(data);
+  for (size_t c = 0; c < ranges.size(); ++c) {
+    lattice.origin[c] = ranges[c].low;
+    range = std::max(range, ranges[c].high - ranges[c].low);
   }
   lattice.range = range > 0.0f ? range : 1.0f;
+  return lattice;
+}
+
+Lattice LatticeOfStep(const Lattice& box, float step) {
+  Lattice lattice = box;
+  const double steps = std::max(static_cast<double>(box.range) / static_cast<double>(step), 1.0);
+  lattice.bits = std::clamp(static_cast<int>(std::ceil(std::log2(steps + 1.0))), 1, kMostLatticeBits);
+  const double last = static_cast<double>((int64_t{1} << lattice.bits) - 1);
+  lattice.range = std::max(static_cast<float>(last * static_cast<double>(step)), box.range);
   return lattice;
 }
 

@@ -26,6 +26,9 @@ struct Lattice {
 // The lattice that Draco itself chooses for float data: the least value of every component, and the largest extent.
 Lattice FitLattice(const AccessorData& data, int bits);
 
+// From the same origin over the same range at least, in other steps; 0 < step.
+Lattice LatticeOfStep(const Lattice& box, float step);
+
 // Every component of float data at its lattice point.
 AccessorData RoundToLattice(const AccessorData& data, const Lattice& lattice);
 

@@ -59,6 +59,15 @@ StatusOr<ProgressiveStream> ParseStream(const Json& json) {
   LACERTA_RETURN_IF_ERROR(ParseVec3(json, "min", &stream.min));
   LACERTA_RETURN_IF_ERROR(ParseVec3(json, "max", &stream.max));
   stream.smooth_normals = AsString(Find(json, "normals")) == "smooth";
+  if (Find(json, "baseLengths") != nullptr) {
+    LACERTA_ASSIGN_OR_RETURN(stream.base_lengths, ParseIndices(json, "baseLengths"));
+    if (stream.base_lengths.empty()) return InvalidData("\"baseLengths\" is empty");
+  }
+  for (uint64_t a = 0; a < ArraySize(json, "attributes"); ++a) {
+    const Json* name = FindElement(json, "attributes", a);
+    if (!name->is_string()) return InvalidData("\"attributes\" holds something else than names");
+    stream.attributes.push_back(name->get<std::string>());
+  }
   const size_t levels = stream.vertex_counts.size();
   if (levels == 0 || stream.triangle_counts.size() != levels || stream.errors.size() != levels) {
     return InvalidData("\"vertexCounts\", \"triangleCounts\" and \"errors\" are not of one length above 0");
@@ -69,6 +78,14 @@ StatusOr<ProgressiveStream> ParseStream(const Json& json) {
 Status CheckSegments(const Progressive& progressive) {
   std::vector<uint64_t> counts(progressive.streams.size(), 0);
   uint64_t sum = 0;
+  const auto adds_up = [&](const Segment& base) {
+    uint64_t left = base.length;
+    for (const uint64_t length : progressive.streams[static_cast<size_t>(base.stream)].base_lengths) {
+      if (length > left) return false;
+      left -= length;
+    }
+    return left == 0;
+  };
   for (const Segment& segment : progressive.segments) {
     if (segment.stream >= counts.size()) {
       return InvalidData("segments.stream: stream " + std::to_string(segment.stream) + " does not exist");
@@ -76,7 +93,10 @@ Status CheckSegments(const Progressive& progressive) {
     if (segment.length > std::numeric_limits<uint64_t>::max() - sum)
       return InvalidData("segments.byteLength overflows");
     sum += segment.length;
-    ++counts[static_cast<size_t>(segment.stream)];
+    const bool is_base = counts[static_cast<size_t>(segment.stream)]++ == 0;
+    if (is_base && !progressive.streams[static_cast<size_t>(segment.stream)].base_lengths.empty() && !adds_up(segment)) {
+      return InvalidData("stream " + std::to_string(segment.stream) + ": \"baseLengths\" do not add up to its base");
+    }
   }
   for (size_t s = 0; s < counts.size(); ++s) {
     const size_t levels = progressive.streams[s].vertex_counts.size();
@@ -170,6 +190,8 @@ Json FormatProgressive(const Progressive& progressive) {
                  {"min", {stream.min.x, stream.min.y, stream.min.z}},
                  {"max", {stream.max.x, stream.max.y, stream.max.z}}};
     if (stream.smooth_normals) json["normals"] = "smooth";
+    if (!stream.base_lengths.empty()) json["baseLengths"] = stream.base_lengths;
+    if (!stream.attributes.empty()) json["attributes"] = stream.attributes;
     streams.push_back(std::move(json));
   }
   Json json = {{"version", kProgressiveVersion}, {"data", progressive.data}};

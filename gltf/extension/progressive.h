@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "document/gltf_document.h"
@@ -22,6 +23,10 @@ struct ProgressiveStream {
   std::vector<double> errors;  // two-sided surface distance to the original, mesh units
   Vec3f min, max;              // of the finest level
   bool smooth_normals = false;
+  // Of a stream that carries attributes or groups, else empty: the lengths of the base section's parts, one stock Draco
+  // stream for each group, and the names of the attributes, of which attribute i has the Draco id i + 1.
+  std::vector<uint64_t> base_lengths;
+  std::vector<std::string> attributes;
 };
 
 struct Segment {

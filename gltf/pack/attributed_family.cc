@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 namespace lacerta {
@@ -64,6 +65,15 @@ StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& p
   return WeldSoups(soups);
 }
 
+bool HasOtherAttributes(const std::vector<const Primitive*>& primitives) {
+  for (const Primitive* primitive : primitives) {
+    for (const Attribute& attribute : primitive->attributes) {
+      if (attribute.name != "POSITION" && !KindOf(attribute).has_value()) return true;
+    }
+  }
+  return false;
+}
+
 ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const AttributeTargets& targets,
                            uint64_t texel_side) {
   ErrorTargets result;
@@ -79,24 +89,6 @@ ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const A
     }
   }
   return result;
-}
-
-std::optional<size_t> AttributeOf(const AttributedMesh& mesh, const Primitive& primitive, const std::string& name,
-                                  size_t member, const TexelScale& scale) {
-  const Attribute* own = primitive.Find(name);
-  if (own == nullptr) return std::nullopt;
-  const std::string wanted = SoupName(*own, member, scale);
-  for (size_t a = 0; a < mesh.attributes.size(); ++a) {
-    if (mesh.attributes[a].name == wanted && mesh.attributes[a].components == own->data.components) return a;
-  }
-  return std::nullopt;
-}
-
-double ReportedError(const AttributedMesh& original, const SurfaceErrors& errors, const ErrorTargets& error_targets,
-                     const AttributeTargets& targets, size_t attribute) {
-  const double error = errors.attributes[attribute].rms_99;
-  if (original.attributes[attribute].kind != AttributeKind::kTextureCoordinates) return error;
-  return error * targets.uv_texels / error_targets.attributes[attribute];  // of the scale that the target is in
 }
 
 }  // namespace lacerta

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,18 +29,13 @@ enum class OtherAttributes { kRefuse, kLeaveOut };
 StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
                                           OtherAttributes others = OtherAttributes::kRefuse);
 
+// Whether there are any of those.
+bool HasOtherAttributes(const std::vector<const Primitive*>& primitives);
+
 // The targets in the units of SurfaceErrorMeter with textures of `texel_side`; `error` in mesh units. No more than one
 // part in two thousand of the area may look away from the original.
 ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const AttributeTargets& targets,
                            uint64_t texel_side);
-
-// Which attribute of the surface a primitive's is; empty where it was left out.
-std::optional<size_t> AttributeOf(const AttributedMesh& mesh, const Primitive& primitive, const std::string& name,
-                                  size_t member, const TexelScale& scale);
-
-// The error of an attribute in the unit of `targets`, of which `error_targets` were made.
-double ReportedError(const AttributedMesh& original, const SurfaceErrors& errors, const ErrorTargets& error_targets,
-                     const AttributeTargets& targets, size_t attribute);
 
 }  // namespace lacerta
 

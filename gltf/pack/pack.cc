@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "document/buffer_edit.h"
@@ -33,41 +34,70 @@ struct Transmission {
   uint64_t bases_end = 0;              // in `data`: bases come first
 };
 
-StatusOr<Transmission> Transmit(const std::vector<const PrimitivePlan*>& plans) {
+// A stream to be stored: of one primitive, or of a family with attributes.
+struct StoredStream {
+  std::vector<const PrimitivePlan*> plans;  // that show it, by groups
+  const Bytes* bytes = nullptr;
+  std::vector<uint64_t> part_sizes;
+  ProgressiveStream description;
+};
+
+StatusOr<ProgressiveStream> DescribeSurface(const PrimitivePlan& plan) {
+  const EncodedMesh& encoded = *plan.progressive;
+  ProgressiveStream stream;
+  for (const LevelReport& level : encoded.report.levels) {
+    stream.vertex_counts.push_back(level.vertices);
+    stream.triangle_counts.push_back(level.triangles);
+    stream.errors.push_back(level.error);
+  }
+  stream.smooth_normals = plan.smooth_normals;
+  LACERTA_ASSIGN_OR_RETURN(const DecodedMesh finest, DecodeMesh(encoded.stream, {}));
+  LACERTA_RETURN_IF_ERROR(finest.refinement);
+  stream.min = stream.max = finest.mesh.positions.empty() ? Vec3f{} : finest.mesh.positions[0];
+  for (const Vec3f& position : finest.mesh.positions) {
+    for (int axis = 0; axis < 3; ++axis) {
+      stream.min[axis] = std::min(stream.min[axis], position[axis]);
+      stream.max[axis] = std::max(stream.max[axis], position[axis]);
+    }
+  }
+  return stream;
+}
+
+StatusOr<std::vector<StoredStream>> CollectStreams(const std::vector<PrimitivePlan>& plans) {
+  std::vector<StoredStream> streams;
+  std::map<const FamilyStream*, size_t> known;
+  for (const PrimitivePlan& plan : plans) {
+    if (plan.progressive.has_value()) {
+      const EncodedMesh& encoded = *plan.progressive;
+      LACERTA_ASSIGN_OR_RETURN(ProgressiveStream description, DescribeSurface(plan));
+      streams.push_back({{&plan}, &encoded.stream, {encoded.part_sizes.begin(), encoded.part_sizes.end()}, std::move(description)});
+    } else if (plan.family != nullptr) {
+      const FamilyStream& family = *plan.family;
+      const auto [found, is_new] = known.emplace(&family, streams.size());
+      if (is_new) streams.push_back({{}, &family.bytes, family.part_sizes, family.description});
+      streams[found->second].plans.push_back(&plan);
+    }
+  }
+  return streams;
+}
+
+Transmission Transmit(const std::vector<StoredStream>& streams) {
   Transmission result;
   std::vector<std::vector<uint64_t>> lengths;
   std::vector<std::vector<double>> errors;
-  for (const PrimitivePlan* plan : plans) {
-    const EncodedMesh& encoded = *plan->progressive;
-    lengths.emplace_back(encoded.part_sizes.begin(), encoded.part_sizes.end());
-    ProgressiveStream stream;
-    for (const LevelReport& level : encoded.report.levels) {
-      stream.vertex_counts.push_back(level.vertices);
-      stream.triangle_counts.push_back(level.triangles);
-      stream.errors.push_back(level.error);
-    }
-    errors.push_back(stream.errors);
-    stream.smooth_normals = plan->smooth_normals;
-    LACERTA_ASSIGN_OR_RETURN(const DecodedMesh finest, DecodeMesh(encoded.stream, {}));
-    LACERTA_RETURN_IF_ERROR(finest.refinement);
-    stream.min = stream.max = finest.mesh.positions.empty() ? Vec3f{} : finest.mesh.positions[0];
-    for (const Vec3f& position : finest.mesh.positions) {
-      for (int axis = 0; axis < 3; ++axis) {
-        stream.min[axis] = std::min(stream.min[axis], position[axis]);
-        stream.max[axis] = std::max(stream.max[axis], position[axis]);
-      }
-    }
-    result.progressive.streams.push_back(std::move(stream));
+  for (const StoredStream& stream : streams) {
+    lengths.push_back(stream.part_sizes);
+    errors.push_back(stream.description.errors);
+    result.progressive.streams.push_back(stream.description);
   }
   result.progressive.segments = OrderSegments(lengths, errors);
-  std::vector<size_t> taken(plans.size(), 0);
-  result.base_offsets.resize(plans.size());
+  std::vector<size_t> taken(streams.size(), 0);
+  result.base_offsets.resize(streams.size());
   for (const Segment& segment : result.progressive.segments) {
     const auto s = static_cast<size_t>(segment.stream);
     const bool is_base = taken[s] == 0;
     if (is_base) result.base_offsets[s] = result.data.size();
-    const Bytes& stream = plans[s]->progressive->stream;
-    const auto begin = stream.begin() + static_cast<std::ptrdiff_t>(taken[s]);
+    const auto begin = streams[s].bytes->begin() + static_cast<std::ptrdiff_t>(taken[s]);
     result.data.insert(result.data.end(), begin, begin + static_cast<std::ptrdiff_t>(segment.length));
     taken[s] += static_cast<size_t>(segment.length);
     if (is_base) result.bases_end = result.data.size();
@@ -95,18 +125,28 @@ StatusOr<NewGeometry> DracoFallback(const EncodedMesh& encoded, uint64_t data_bu
   return geometry;
 }
 
+// The same for a group of a stream with attributes; offset: of its part of the base section.
+NewGeometry GroupFallback(const FamilyStream& family, size_t group, uint64_t data_buffer, uint64_t offset,
+                          GltfDocument* document) {
+  NewGeometry geometry = DescribedGeometry(family.groups[group].base);
+  Json ids = Json::object();
+  for (const DracoAttributeId& id : family.groups[group].ids) ids[id.name] = id.id;
+  const uint64_t view = AddBufferView(data_buffer, offset, family.description.base_lengths[group], document);
+  geometry.extensions[kDracoName] = {{"bufferView", view}, {"attributes", std::move(ids)}};
+  return geometry;
+}
+
 // `external` takes what follows the bases, unless it is null.
-Status StoreProgressive(const std::vector<const PrimitivePlan*>& plans, Fallback fallback, Bytes* external,
-                        AccessorPool* pool, GltfDocument* document) {
-  LACERTA_ASSIGN_OR_RETURN(Transmission transmission, Transmit(plans));
-  std::vector<NewGeometry> geometries;
-  if (fallback != Fallback::kDraco) {
-    for (const PrimitivePlan* plan : plans) {
-      const bool plain = fallback == Fallback::kPlain;
-      LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh,
-                               DecodeLevel(plan->progressive->stream, plain ? std::optional<int>(0) : std::nullopt));
-      geometries.push_back(plain ? PlainGeometry(mesh, plan->smooth_normals, document) : DescribedGeometry(mesh));
-    }
+Status StoreProgressive(const std::vector<StoredStream>& streams, Fallback fallback, Bytes* external, AccessorPool* pool,
+                        GltfDocument* document) {
+  Transmission transmission = Transmit(streams);
+  std::vector<NewGeometry> geometries(streams.size());  // of streams without attributes
+  for (size_t s = 0; s < streams.size() && fallback != Fallback::kDraco; ++s) {
+    const PrimitivePlan& plan = *streams[s].plans[0];
+    const bool plain = fallback == Fallback::kPlain;
+    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh,
+                             DecodeLevel(*streams[s].bytes, plain ? std::optional<int>(0) : std::nullopt));
+    geometries[s] = plain ? PlainGeometry(mesh, plan.smooth_normals, document) : DescribedGeometry(mesh);
   }
   if (external != nullptr) {
     const auto bases_end = transmission.data.begin() + static_cast<std::ptrdiff_t>(transmission.bases_end);
@@ -117,14 +157,21 @@ Status StoreProgressive(const std::vector<const PrimitivePlan*>& plans, Fallback
   const uint64_t length = transmission.data.size();
   const uint64_t buffer = AddBuffer(std::move(transmission.data), document);
   transmission.progressive.data = AddBufferView(buffer, 0, length, document);
-  for (size_t s = 0; s < plans.size() && fallback == Fallback::kDraco; ++s) {
-    LACERTA_ASSIGN_OR_RETURN(NewGeometry geometry,
-                             DracoFallback(*plans[s]->progressive, buffer, transmission.base_offsets[s], document));
-    geometries.push_back(std::move(geometry));
-  }
-  for (size_t s = 0; s < plans.size(); ++s) {
-    geometries[s].extensions[kProgressiveName] = {{"stream", s}, {"group", 0}};
-    ReplaceGeometry(plans[s]->geometries, plans[s]->places, std::move(geometries[s]), pool, document);
+  for (size_t s = 0; s < streams.size(); ++s) {
+    uint64_t offset = transmission.base_offsets[s];
+    for (const PrimitivePlan* plan : streams[s].plans) {
+      NewGeometry geometry;
+      if (plan->family != nullptr) {
+        geometry = GroupFallback(*plan->family, plan->group, buffer, offset, document);
+        offset += plan->family->description.base_lengths[plan->group];
+      } else if (fallback == Fallback::kDraco) {
+        LACERTA_ASSIGN_OR_RETURN(geometry, DracoFallback(*plan->progressive, buffer, offset, document));
+      } else {
+        geometry = std::move(geometries[s]);
+      }
+      geometry.extensions[kProgressiveName] = {{"stream", s}, {"group", plan->group}};
+      ReplaceGeometry(plan->geometries, plan->places, std::move(geometry), pool, document);
+    }
   }
   document->json["extensions"][kProgressiveName] = FormatProgressive(transmission.progressive);
   return Status();
@@ -160,17 +207,16 @@ StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& opti
     geometries.insert(geometries.end(), plan.geometries.begin(), plan.geometries.end());
   }
   AccessorPool pool(document, geometries);
-  std::vector<const PrimitivePlan*> progressive;
   PackResult result;
   for (const PrimitivePlan& plan : plans) {
     if (plan.draco.has_value()) StoreDraco(plan, &pool, &document);
-    if (plan.progressive.has_value()) progressive.push_back(&plan);
     result.report.primitives.push_back(plan.report);
   }
-  if (!progressive.empty()) LACERTA_RETURN_IF_ERROR(StoreProgressive(progressive, options.fallback,
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<StoredStream> streams, CollectStreams(plans));
+  if (!streams.empty()) LACERTA_RETURN_IF_ERROR(StoreProgressive(streams, options.fallback,
                                                                   options.external_uri.empty() ? nullptr : &result.external, &pool,
                                                                   &document));
-  DeclareExtensions(options.fallback, !progressive.empty(), &document);
+  DeclareExtensions(options.fallback, !streams.empty(), &document);
   unused_views.insert(pool.released_views().begin(), pool.released_views().end());
   DropUnusedViews(unused_views, &document);
   LACERTA_RETURN_IF_ERROR(MergeBuffers(&document));

@@ -157,13 +157,9 @@ TexelScale ScaleOf(const Context& context, size_t family) {
   };
 }
 
-// With all vertices. Sets *everywhere to RoundedFamily's.
-StatusOr<FamilyCandidate> WithAllVertices(size_t family, const Context& context, std::vector<double>* everywhere) {
+// Fails with kUnsupported where morph targets cannot follow.
+StatusOr<FamilyCandidate> ToCandidate(const Context& context, size_t family, RoundedFamily rounded) {
   const std::vector<size_t>& members = context.families.families[family].members;
-  LACERTA_ASSIGN_OR_RETURN(RoundedFamily rounded,
-                           RoundFamily(PrimitivesOf(context, family), ErrorOf(context, family),
-                                       context.options->attributes, context.texel_side, ScaleOf(context, family)));
-  *everywhere = std::move(rounded.everywhere);
   FamilyCandidate candidate;
   for (size_t m = 0; m < members.size(); ++m) {
     const Source& source = context.sources[members[m]];
@@ -172,8 +168,8 @@ StatusOr<FamilyCandidate> WithAllVertices(size_t family, const Context& context,
     if (!source.targets.empty() && !ReorderTargets(source, rounded.precisions[m], member.encoded.decoded, &member.targets)) {
       return Unsupported("has morph targets that tell apart what its other attributes do not");
     }
-    member.report.error = rounded.lattice.error;
-    member.report.position_bits = rounded.lattice.lattice.bits;
+    member.report.error = rounded.error;
+    member.report.position_bits = rounded.precisions[m].positions.bits;
     member.report.attributes = std::move(rounded.reports[m]);
     candidate.members.push_back(std::move(member));
   }
@@ -181,30 +177,73 @@ StatusOr<FamilyCandidate> WithAllVertices(size_t family, const Context& context,
   return candidate;
 }
 
-StatusOr<FamilyCandidate> Simplified(size_t family, const Context& context, const std::vector<double>& everywhere) {
-  const std::vector<size_t>& members = context.families.families[family].members;
-  for (const size_t member : members) {
+// With all vertices. Sets *everywhere to RoundedFamily's.
+StatusOr<FamilyCandidate> WithAllVertices(const Context& context, size_t family, const FamilyMeter& meter,
+                                          std::vector<double>* everywhere) {
+  // Vertices with other morph targets must not become one.
+  const auto targets_follow = [&](const RoundedFamily& rounded) { return ToCandidate(context, family, rounded).ok(); };
+  LACERTA_ASSIGN_OR_RETURN(RoundedFamily rounded, RoundFamily(meter.primitives(), meter, nullptr, {}, targets_follow));
+  *everywhere = std::move(rounded.everywhere);
+  return ToCandidate(context, family, std::move(rounded));
+}
+
+StatusOr<FamilyCandidate> Simplified(const Context& context, size_t family, const FamilyMeter& meter,
+                                     const std::vector<double>& everywhere) {
+  for (const size_t member : context.families.families[family].members) {
     if (!context.sources[member].targets.empty()) return Unsupported("has morph targets");
   }
-  const std::vector<const Primitive*> primitives = PrimitivesOf(context, family);
-  LACERTA_ASSIGN_OR_RETURN(
-      SimplifiedFamily simplified,
-      SimplifyFamily(primitives, ErrorOf(context, family), context.options->attributes, context.texel_side,
-                     ScaleOf(context, family),
-                     context.options->attributes.normals_everywhere ? everywhere : std::vector<double>()));
-  FamilyCandidate candidate;
-  for (size_t m = 0; m < members.size(); ++m) {
-    DracoCandidate member;
-    member.encoded = std::move(simplified.members[m]);
-    member.report.error = simplified.error;
-    member.report.position_bits = simplified.position_bits;
-    member.report.attributes = std::move(simplified.reports[m]);
-    member.report.reason = "simplified from " + std::to_string(primitives[m]->triangles.size()) + " to " +
-                           std::to_string(member.encoded.decoded.triangles.size()) + " triangles";
-    candidate.members.push_back(std::move(member));
+  const bool held = context.options->attributes.normals_everywhere;
+  LACERTA_ASSIGN_OR_RETURN(RoundedFamily simplified, SimplifyFamily(meter, held ? everywhere : std::vector<double>()));
+  LACERTA_ASSIGN_OR_RETURN(FamilyCandidate candidate, ToCandidate(context, family, std::move(simplified)));
+  for (size_t m = 0; m < candidate.members.size(); ++m) {
+    candidate.members[m].report.reason =
+        "simplified from " + std::to_string(meter.primitives()[m]->triangles.size()) + " to " +
+        std::to_string(candidate.members[m].encoded.decoded.triangles.size()) + " triangles";
   }
-  candidate.bytes = StoredBytes(candidate);
   return candidate;
+}
+
+// Whether a stream of the whole family with all attributes is what is stored: it is smaller than `other` and `least` bytes,
+// or levels are wanted whatever they take. Makes it the plan then.
+bool PlanStream(size_t family, const Context& context, const FamilyMeter& meter, const FamilyCandidate* other,
+                uint64_t least, std::vector<PrimitivePlan>* plans) {
+  const PackOptions& options = *context.options;
+  const std::vector<size_t>& members = context.families.families[family].members;
+  const LevelChoice levels = options.encode.levels;
+  if (levels == LevelChoice::kNever || options.fallback != Fallback::kDraco) return false;
+  if (!options.simplify && levels != LevelChoice::kAlways) return false;
+  for (const size_t member : members) {
+    if (!context.sources[member].targets.empty()) return false;
+  }
+  FamilyStreamOptions wanted;
+  const uint64_t json = kDracoJsonBytes * members.size() + kProgressiveJsonBytes;
+  if (levels != LevelChoice::kAlways) {
+    if (least <= json) return false;
+    wanted.bytes_to_beat = least - json;
+    for (const DracoCandidate& member : other == nullptr ? std::vector<DracoCandidate>() : other->members) {
+      wanted.triangles_to_beat += member.encoded.decoded.triangles.size();
+    }
+  }
+  StatusOr<FamilyStream> stream = StreamFamily(meter, wanted);
+  if (!stream.ok()) {
+    for (const size_t member : members) AddReason("no stream: " + stream.status().message(), &(*plans)[member].report);
+    return false;
+  }
+  const auto shared = std::make_shared<const FamilyStream>(std::move(stream).value());
+  for (size_t m = 0; m < members.size(); ++m) {
+    PrimitivePlan& plan = (*plans)[members[m]];
+    PrimitiveReport& report = plan.report;
+    plan.family = shared;
+    plan.group = m;
+    report.storage = PrimitiveStorage::kProgressive;
+    report.reason = "with its attributes in " + std::to_string(shared->part_sizes.size() - 1) + " levels";
+    report.attributes = shared->reports[m];
+    report.error = shared->description.errors.back();
+    report.target_error = ErrorOf(context, family);
+    // The refinement is that of all; the first carries it.
+    report.bytes_after = shared->description.base_lengths[m] + (m == 0 ? shared->bytes.size() - shared->part_sizes[0] : 0);
+  }
+  return true;
 }
 
 // The smallest of what there is, Draco with all vertices and Draco of a simplified surface, for a whole family: one that
@@ -216,7 +255,9 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
   for (const size_t member : members) least += (*plans)[member].report.bytes_before;
   if (is_stream) least = std::min(least, (*plans)[members[0]].progressive->stream.size() + kDracoJsonBytes + kProgressiveJsonBytes);
   std::vector<double> everywhere;
-  StatusOr<FamilyCandidate> chosen = WithAllVertices(family, context, &everywhere);
+  const FamilyMeter meter(PrimitivesOf(context, family), ErrorOf(context, family), context.options->attributes,
+                          context.texel_side, ScaleOf(context, family));
+  StatusOr<FamilyCandidate> chosen = WithAllVertices(context, family, meter, &everywhere);
   std::string against = chosen.ok() ? "" : chosen.status().message();
   if (chosen.ok() && chosen.value().bytes >= least) {
     against = "compressed it would be larger (" + std::to_string(chosen.value().bytes) + " bytes with their description)";
@@ -225,13 +266,15 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
   if (chosen.ok()) least = chosen.value().bytes;
   std::string simplified_reason;
   if (context.options->simplify && !is_stream) {  // streams have tried a simplified surface themselves
-    StatusOr<FamilyCandidate> simplified = Simplified(family, context, everywhere);
+    StatusOr<FamilyCandidate> simplified = Simplified(context, family, meter, everywhere);
     if (simplified.ok() && simplified.value().bytes < least) {
       chosen = std::move(simplified);
+      least = chosen.value().bytes;
     } else {
       simplified_reason = simplified.ok() ? "simplified it would be larger" : "not simplified: " + simplified.status().message();
     }
   }
+  if (!is_stream && PlanStream(family, context, meter, chosen.ok() ? &chosen.value() : nullptr, least, plans)) return;
   for (size_t m = 0; m < members.size(); ++m) {
     PrimitivePlan& plan = (*plans)[members[m]];
     if (!chosen.ok()) {
@@ -379,7 +422,7 @@ StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const GltfDocument& document, 
   constexpr double kAttributesFrom = 70.0;  // dB: above, their own targets hold
   const auto budget = options.encode.target.value;
   double low = 20.0;
-  double high = 110.0;
+  double high = 130.0;
   std::optional<std::vector<PrimitivePlan>> best;
   for (int trial = 0; trial < kMostTrials; ++trial) {
     const double psnr = trial == 0 ? kAttributesFrom : (low + high) / 2.0;

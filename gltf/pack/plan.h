@@ -3,6 +3,7 @@
 #define LACERTA_PACK_PLAN_H_
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "document/place.h"
 #include "document/primitive.h"
 #include "lacerta/gltf.h"
+#include "pack/family_stream.h"
 #include "pack/source.h"
 
 namespace lacerta {
@@ -23,6 +25,9 @@ struct PrimitivePlan {
   PrimitiveReport report;         // of the first place
   bool smooth_normals = false;    // NORMAL was dropped, readers derive it
   std::optional<EncodedMesh> progressive;
+  // The stream of the family, shared by its members, and which group of it this is.
+  std::shared_ptr<const FamilyStream> family;
+  size_t group = 0;
   std::optional<DracoEncoded> draco;
   std::vector<MorphTarget> targets;  // in the order of the vertices of `draco`
 };

@@ -8,193 +8,281 @@
 #include <string>
 #include <utility>
 
+#include "pack/rounded_attributes.h"
+#include "pack/rounding_forecast.h"
+
 namespace lacerta {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kMostFlipped = 5e-4;
 
-TriangleMesh Joined(const std::vector<const Primitive*>& primitives) {
-  TriangleMesh all;
-  for (const Primitive* primitive : primitives) {
-    const TriangleMesh part = Surface(*primitive);
-    const auto offset = static_cast<uint32_t>(all.positions.size());
-    all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
-    for (const Triangle& t : part.triangles) all.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-  }
-  return all;
-}
-
-// Bits beyond those that the vertices alone ask for.
-struct Extra {
+// How finely positions and every attribute are rounded.
+struct Levels {
   int positions = 0;
-  std::map<size_t, int> attributes;  // by the index in the surface
+  std::vector<int> attributes;
+  bool operator<(const Levels& other) const {
+    return positions != other.positions ? positions < other.positions : attributes < other.attributes;
+  }
 };
 
 struct Trial {
-  Extra extra;
+  Levels levels;
   RoundedFamily family;
-  std::vector<double> ratios;  // of the attributes' errors to their targets
-  double ratio = kInfinity;    // the worst of all
   uint64_t bytes = 0;
+  bool is_measured = false;
+  bool met = false;  // if measured
 };
+
+// Measured over forecast, squared; of what is not yet measured 1.
+struct Correction {
+  double distance = 1.0;
+  std::vector<double> attributes;
+};
+
+double Square(double x) { return x * x; }
 
 class FamilyRounder {
  public:
-  FamilyRounder(const std::vector<const Primitive*>& primitives, double error, const AttributeTargets& targets,
-                const TexelScale& texels_per_unit)
-      : primitives_(primitives), error_(error), targets_(targets), texels_per_unit_(texels_per_unit),
-        surface_(Joined(primitives)), lattice_(FindPositionLattice(surface_, error)) {
-    for (size_t m = 0; m < primitives.size(); ++m) {
-      attributes_.push_back(
-          FindAttributeBits(*primitives[m], targets, [&](uint64_t set) { return texels_per_unit(m, set); }));
+  FamilyRounder(const std::vector<const Primitive*>& primitives, const FamilyMeter& meter, const SurfaceErrors* own,
+                const std::vector<double>& everywhere, const std::function<bool(const RoundedFamily&)>& is_usable)
+      : primitives_(primitives), meter_(meter), is_usable_(is_usable),
+        attributes_(RoundedAttributesOf(primitives, meter.attribute_targets(), meter.texels_per_unit())),
+        forecast_(primitives_, attributes_), own_attributes_(attributes_.size(), 0.0),
+        indices_(attributes_.size()) {
+    correction_.attributes.assign(attributes_.size(), 1.0);
+    for (const RoundedAttribute& attribute : attributes_) num_numbers_.push_back(attribute.num_numbers);
+    if (!meter.status().ok()) return;
+    targets_ = meter.targets();
+    targets_.everywhere = everywhere;
+    num_positions_ = static_cast<double>(meter.original().surface.positions.size());
+    for (size_t a = 0; a < attributes_.size(); ++a) {
+      indices_[a] = meter.IndexOf(attributes_[a].name);
+      if (!indices_[a].has_value()) continue;
+      const MeshAttribute& welded = meter.original().attributes[*indices_[a]];  // vertices share values
+      num_numbers_[a] = static_cast<double>(welded.num_values()) * (attributes_[a].octahedral ? 2 : welded.components);
+    }
+    if (own == nullptr) return;
+    own_distance_ = own->distance / targets_.distance;
+    for (size_t a = 0; a < attributes_.size(); ++a) {
+      if (indices_[a].has_value()) own_attributes_[a] = Ratio(*own, *indices_[a]);
     }
   }
 
-  StatusOr<RoundedFamily> Run(uint64_t texel_side) {
-    StatusOr<AttributedMesh> original = ToAttributedMesh(primitives_, texels_per_unit_, OtherAttributes::kLeaveOut);
-    StatusOr<SurfaceErrorMeter> meter = original.status();
-    if (original.ok()) meter = SurfaceErrorMeter::Create(original.value(), static_cast<double>(texel_side));
-    if (meter.ok()) {
-      original_ = &original.value();
-      meter_ = &meter.value();
-      error_targets_ = FamilyTargets(*original_, error_, targets_, texel_side);
+  StatusOr<RoundedFamily> Run() {
+    constexpr int kMostRounds = 10;
+    constexpr double kWorthwhile = 0.01;  // of the bytes, for another measure
+    std::optional<Trial> best;
+    for (int round = 0; round < kMostRounds; ++round) {
+      LACERTA_ASSIGN_OR_RETURN(Trial* trial, Smallest());
+      // What is decoded has all that was asked for and nothing smaller is expected: done.
+      if (trial == nullptr || trial->is_measured) break;
+      if (best.has_value() && static_cast<double>(trial->bytes) > (1.0 - kWorthwhile) * static_cast<double>(best->bytes)) break;
+      Measure(trial);
+      if (trial->met) best = *trial;
     }
-    LACERTA_ASSIGN_OR_RETURN(Trial best, Try({}));
-    for (int step = 1; best.ratio > 1.0;) {
-      std::optional<Trial> next;
-      for (const Extra& extra : Finer(best, step)) {
-        LACERTA_ASSIGN_OR_RETURN(Trial trial, Try(extra));
-        if (!next.has_value() || IsBetter(trial, *next, best)) next = std::move(trial);
-      }
-      if (!next.has_value()) return Unsupported("rounding misses the errors at every precision");
-      // Where a bit hardly helps, several may.
-      step = next->ratio > 0.9 * best.ratio ? 2 * step : 1;
-      best = std::move(*next);
-    }
-    return std::move(best.family);
+    if (!best.has_value()) return Unsupported("rounding misses the errors at every precision");
+    return std::move(best->family);
   }
 
  private:
-  StatusOr<Trial> Try(const Extra& extra) const {
-    Trial trial;
-    trial.extra = extra;
-    RoundedFamily& family = trial.family;
-    family.lattice =
-        extra.positions == 0 ? lattice_ : FindPositionLattice(surface_, error_, lattice_.lattice.bits + extra.positions);
-    std::vector<const Primitive*> decoded;
-    for (size_t m = 0; m < primitives_.size(); ++m) {
-      DracoPrecision precision{family.lattice.lattice, attributes_[m].bits};
-      std::vector<AttributeReport> reports = attributes_[m].reports;
-      for (AttributeReport& report : reports) {
-        const auto bits = precision.bits.find(report.name);
-        const auto more = extra.attributes.find(IndexOf(m, report.name).value_or(kNone));
-        if (bits == precision.bits.end() || more == extra.attributes.end()) continue;
-        bits->second += more->second;
-        report.bits = bits->second <= kMostLatticeBits ? bits->second : 0;
-        if (report.bits == 0) precision.bits.erase(bits);  // exact
-      }
-      LACERTA_ASSIGN_OR_RETURN(DracoEncoded encoded, EncodeDracoPrimitive(*primitives_[m], precision));
-      trial.bytes += encoded.bytes.size();
-      family.members.push_back(std::move(encoded));
-      family.precisions.push_back(std::move(precision));
-      family.reports.push_back(std::move(reports));
-    }
-    for (const DracoEncoded& member : family.members) decoded.push_back(&member.decoded);
-    if (meter_ == nullptr) {
-      trial.ratio = 0.0;
-      return trial;
-    }
-    constexpr uint64_t kSamples = 100'000;
-    LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh,
-                             ToAttributedMesh(decoded, texels_per_unit_, OtherAttributes::kLeaveOut));
-    const StatusOr<SurfaceErrors> errors = meter_->Measure(mesh, kSamples);
-    trial.ratios.assign(original_->attributes.size(), 0.0);
-    if (errors.ok()) Judge(errors.value(), &trial);  // else a group has lost its area
-    return trial;
+  double Ratio(const SurfaceErrors& errors, size_t index) const {
+    const double ratio = errors.attributes[index].rms_99 / targets_.attributes[index];
+    if (targets_.everywhere.empty()) return ratio;
+    return std::max(ratio, errors.attributes[index].rms / targets_.everywhere[index]);
   }
 
-  void Judge(const SurfaceErrors& errors, Trial* trial) const {
-    RoundedFamily& family = trial->family;
-    trial->ratio = WorstRatio(errors, error_targets_);
-    for (size_t a = 0; a < original_->attributes.size(); ++a) {
-      trial->ratios[a] = errors.attributes[a].rms_99 / error_targets_.attributes[a];
-      const AttributeKind kind = original_->attributes[a].kind;
-      const bool direction = kind == AttributeKind::kNormal || kind == AttributeKind::kTangent;
-      family.everywhere.push_back(direction ? std::max(errors.attributes[a].rms, error_targets_.attributes[a])
-                                            : kInfinity);
+  // The coarsest level at which an attribute is expected to meet its target on these positions; beyond kMostLevel: exact.
+  std::optional<int> LevelFor(size_t a, const RoundedPositions& positions) {
+    const RoundedAttribute& attribute = attributes_[a];
+    const double room = (1.0 - Square(own_attributes_[a])) / correction_.attributes[a] - Square(positions.slides[a] / attribute.target);
+    if (!(room >= 0.0)) return std::nullopt;
+    const auto meets = [&](int level) { return Square(forecast_.Rounded(a, level) / attribute.target) <= room; };
+    int low = attribute.FirstLevel() - 1;  // too coarse
+    int high = kMostLevel + 1;
+    while (high - low > 1) {
+      const int middle = (low + high) / 2;
+      (meets(attribute.AtOrAbove(middle)) ? high : low) = middle;
     }
-    family.lattice.error = std::max(family.lattice.error, errors.distance);
-    for (size_t m = 0; m < family.reports.size(); ++m) {
-      for (AttributeReport& report : family.reports[m]) {
-        const std::optional<size_t> a = IndexOf(m, report.name);
-        if (!a.has_value()) continue;
-        report.error = std::max(report.error, ReportedError(*original_, errors, error_targets_, targets_, *a));
-      }
-    }
+    return high > kMostLevel ? high : attribute.AtOrAbove(high);
   }
 
-  // Finer positions, or finer values of what misses its target.
-  std::vector<Extra> Finer(const Trial& trial, int step) const {
-    std::vector<Extra> result;
-    const int room = kMostLatticeBits - trial.family.lattice.lattice.bits;
-    if (room > 0) {
-      result.push_back(trial.extra);
-      result.back().positions += std::min(step, room);
+  // The smallest of what is expected to meet the targets; null where nothing is.
+  StatusOr<Trial*> Smallest() {
+    Trial* smallest = nullptr;
+    for (const Levels& levels : Candidates()) {
+      auto known = trials_.find(levels);
+      if (known == trials_.end()) {
+        LACERTA_ASSIGN_OR_RETURN(Trial trial, Encode(levels));
+        known = trials_.emplace(levels, std::move(trial)).first;
+      }
+      if (smallest == nullptr || known->second.bytes < smallest->bytes) smallest = &known->second;
     }
-    for (size_t a = 0; a < trial.ratios.size(); ++a) {
-      if (trial.ratios[a] <= 1.0 || IsExact(trial, a)) continue;
-      result.push_back(trial.extra);
-      result.back().attributes[a] += step;
+    return smallest;
+  }
+
+  // Levels that are expected to meet the targets: from the coarsest positions on, with attributes as coarse as these allow,
+  // the few for which the fewest bits are expected.
+  std::vector<Levels> Candidates() {
+    constexpr int kStride = 2;
+    constexpr int kPatience = 4;  // positions that cost more than the best
+    constexpr size_t kKept = 4;
+    std::vector<std::pair<double, Levels>> all;
+    double least = kInfinity;
+    int worse = 0;
+    for (int p = FirstPositions(); p <= kMostLevel && worse < kPatience; p += kStride) {
+      const RoundedPositions& positions = forecast_.Positions(p);
+      if (positions.flipped > kMostFlipped && p + kStride <= kMostLevel) continue;
+      Levels levels{p, {}};
+      double bits = num_positions_ * 3.0 * p / kLevelsPerBit;
+      for (size_t a = 0; a < attributes_.size() && std::isfinite(bits); ++a) {
+        const std::optional<int> level = LevelFor(a, positions);
+        bits += level.has_value() ? num_numbers_[a] * *level / kLevelsPerBit : kInfinity;
+        levels.attributes.push_back(level.value_or(0));
+      }
+      if (!std::isfinite(bits)) continue;
+      worse = bits < least ? 0 : worse + 1;
+      least = std::min(least, bits);
+      all.emplace_back(bits, std::move(levels));
     }
+    // How many bits entropy coding leaves of these is not known, so the coarsest positions stay whatever they seem to cost.
+    if (!all.empty()) std::sort(all.begin() + 1, all.end());
+    std::vector<Levels> result;
+    for (size_t i = 0; i < std::min(all.size(), kKept); ++i) result.push_back(std::move(all[i].second));
     return result;
   }
 
-  bool IsExact(const Trial& trial, size_t attribute) const {
-    for (size_t m = 0; m < primitives_.size(); ++m) {
-      for (const AttributeReport& report : trial.family.reports[m]) {
-        if (report.bits > 0 && IndexOf(m, report.name) == attribute) return false;
+  // The coarsest positions that are expected to be near enough.
+  int FirstPositions() {
+    const double room = (1.0 - Square(own_distance_)) / correction_.distance;
+    const auto meets = [&](int level) { return Square(forecast_.Positions(level).distance / meter_.error()) <= room; };
+    if (!(meter_.error() > 0.0) || !(room > 0.0)) return kMostLevel;
+    int level = std::max(forecast_.StartLevel(meter_.error() * std::sqrt(room)), least_positions_);
+    while (level < kMostLevel && !meets(level)) ++level;
+    while (level > least_positions_ && meets(level - 1)) --level;
+    return level;
+  }
+
+  StatusOr<Trial> Encode(const Levels& levels) {
+    Trial trial;
+    trial.levels = levels;
+    const RoundedPositions& positions = forecast_.Positions(levels.positions);
+    RoundedFamily& family = trial.family;
+    family.precisions.assign(primitives_.size(), DracoPrecision{positions.lattice, {}, 0});
+    for (const Primitive* primitive : primitives_) {
+      family.reports.emplace_back();
+      for (const Attribute& attribute : primitive->attributes) {
+        if (attribute.name != "POSITION") family.reports.back().push_back({attribute.name, 0, 0.0, ""});
       }
     }
-    return true;
-  }
-
-  // The smaller of two that meet the targets; else the one that comes nearer to them for the bytes it adds.
-  static bool IsBetter(const Trial& a, const Trial& b, const Trial& before) {
-    if (a.ratio <= 1.0 || b.ratio <= 1.0) {
-      return a.ratio <= 1.0 && (b.ratio > 1.0 || a.bytes < b.bytes);
+    for (size_t a = 0; a < attributes_.size(); ++a) SetAttribute(a, levels.attributes[a], positions, &family);
+    for (size_t m = 0; m < primitives_.size(); ++m) {
+      LACERTA_ASSIGN_OR_RETURN(DracoEncoded encoded, EncodeDracoPrimitive(*primitives_[m], family.precisions[m]));
+      trial.bytes += encoded.bytes.size();
+      family.members.push_back(std::move(encoded));
     }
-    const auto gain = [&](const Trial& trial) {
-      if (!std::isfinite(before.ratio)) return -trial.ratio;
-      const double bytes = static_cast<double>(trial.bytes) - static_cast<double>(before.bytes);
-      return std::log(before.ratio / trial.ratio) / std::max(bytes, 1.0);
+    family.error = positions.distance;
+    return trial;
+  }
+
+  // Says whether what is decoded meets the targets, and corrects the forecast.
+  void Measure(Trial* trial) {
+    trial->is_measured = true;
+    trial->met = is_usable_ == nullptr || is_usable_(trial->family);
+    if (!trial->met) least_positions_ = trial->levels.positions + kLevelsPerBit / 2;
+    if (!trial->met || !meter_.status().ok()) return;
+    std::vector<const Primitive*> decoded;
+    for (const DracoEncoded& member : trial->family.members) decoded.push_back(&member.decoded);
+    const StatusOr<SurfaceErrors> errors = meter_.Measure(decoded);
+    const Levels& levels = trial->levels;
+    trial->met = errors.ok() && WorstRatio(errors.value(), targets_) <= 1.0;
+    // A group has lost its area, or too much has turned: no forecast tells how much finer that has to be.
+    if (!errors.ok() || errors.value().turned > targets_.turned) least_positions_ = levels.positions + 1;
+    if (!errors.ok()) return;
+    Report(errors.value(), &trial->family);
+    Correct(errors.value(), levels, forecast_.Positions(levels.positions));
+  }
+
+  void SetAttribute(size_t a, int level, const RoundedPositions& positions, RoundedFamily* family) {
+    if (level > kMostLevel) return;
+    const RoundedAttribute& attribute = attributes_[a];
+    for (const RoundedAttribute::Part& part : attribute.parts) {
+      const std::string& name = primitives_[part.member]->attributes[part.index].name;
+      DracoPrecision& precision = family->precisions[part.member];
+      int bits = level / kLevelsPerBit;
+      if (attribute.octahedral) {
+        precision.normal_bits = bits;
+      } else {
+        const Lattice lattice = attribute.LatticeAt(part, level);
+        precision.lattices[name] = lattice;
+        bits = lattice.bits;
+      }
+      for (AttributeReport& report : family->reports[part.member]) {
+        if (report.name != name) continue;
+        report.bits = bits;
+        report.error = std::hypot(forecast_.Rounded(a, level), positions.slides[a]);
+        report.unit = attribute.unit;
+      }
+    }
+  }
+
+  void Report(const SurfaceErrors& errors, RoundedFamily* family) const {
+    family->error = errors.distance;
+    for (const MeshAttribute& attribute : meter_.original().attributes) {
+      const size_t a = family->everywhere.size();
+      const bool direction = attribute.kind == AttributeKind::kNormal || attribute.kind == AttributeKind::kTangent;
+      family->everywhere.push_back(direction ? std::max(errors.attributes[a].rms, targets_.attributes[a]) : kInfinity);
+    }
+    for (size_t a = 0; a < attributes_.size(); ++a) {
+      if (!indices_[a].has_value()) continue;
+      for (const RoundedAttribute::Part& part : attributes_[a].parts) {
+        const std::string& name = primitives_[part.member]->attributes[part.index].name;
+        for (AttributeReport& report : family->reports[part.member]) {
+          if (report.name == name) report.error = meter_.Reported(errors, *indices_[a]);
+        }
+      }
+    }
+  }
+
+  // What was measured takes the place of what was expected.
+  void Correct(const SurfaceErrors& errors, const Levels& levels, const RoundedPositions& positions) {
+    const auto corrected = [](double measured, double own, double expected) {
+      constexpr double kLeast = 0.2, kTiny = 1e-6;
+      // Never quite as small as measured: what seems to add nothing is below the precision of the measure.
+      return std::max(Square(measured) - Square(own), kLeast * Square(expected)) / std::max(Square(expected), kTiny);
     };
-    return gain(a) > gain(b);
+    correction_.distance =
+        corrected(errors.distance / targets_.distance, own_distance_, positions.distance / targets_.distance);
+    for (size_t a = 0; a < attributes_.size(); ++a) {
+      if (!indices_[a].has_value()) continue;
+      const double expected = std::hypot(forecast_.Rounded(a, levels.attributes[a]), positions.slides[a]) / attributes_[a].target;
+      correction_.attributes[a] = corrected(Ratio(errors, *indices_[a]), own_attributes_[a], expected);
+    }
   }
 
-  std::optional<size_t> IndexOf(size_t member, const std::string& name) const {
-    if (original_ == nullptr) return std::nullopt;
-    return AttributeOf(*original_, *primitives_[member], name, member, texels_per_unit_);
-  }
-
-  static constexpr size_t kNone = ~size_t{0};
   const std::vector<const Primitive*>& primitives_;
-  const double error_;
-  const AttributeTargets& targets_;
-  const TexelScale& texels_per_unit_;
-  const TriangleMesh surface_;
-  const SharedLattice lattice_;
-  std::vector<AttributePrecision> attributes_;  // parallel to the primitives
-  const AttributedMesh* original_ = nullptr;    // null where there is nothing to measure
-  const SurfaceErrorMeter* meter_ = nullptr;
-  ErrorTargets error_targets_;
+  const FamilyMeter& meter_;
+  const std::function<bool(const RoundedFamily&)>& is_usable_;
+  const std::vector<RoundedAttribute> attributes_;
+  RoundingForecast forecast_;
+  // Errors that the primitives have before they are rounded, relative to the targets.
+  double own_distance_ = 0.0;
+  std::vector<double> own_attributes_;
+  std::vector<std::optional<size_t>> indices_;  // of attributes_ in the meter's original
+  ErrorTargets targets_;
+  double num_positions_ = 1.0;
+  std::vector<double> num_numbers_;  // of each attribute
+  int least_positions_ = 1;
+  Correction correction_;
+  std::map<Levels, Trial> trials_;
 };
 
 }  // namespace
 
-StatusOr<RoundedFamily> RoundFamily(const std::vector<const Primitive*>& primitives, double error,
-                                    const AttributeTargets& targets, uint64_t texel_side,
-                                    const TexelScale& texels_per_unit) {
-  return FamilyRounder(primitives, error, targets, texels_per_unit).Run(texel_side);
+StatusOr<RoundedFamily> RoundFamily(const std::vector<const Primitive*>& primitives, const FamilyMeter& meter,
+                                    const SurfaceErrors* own_errors, const std::vector<double>& everywhere,
+                                    const std::function<bool(const RoundedFamily&)>& is_usable) {
+  return FamilyRounder(primitives, meter, own_errors, everywhere, is_usable).Run();
 }
 
 }  // namespace lacerta

@@ -1,38 +1,39 @@
-// A family of primitives with all vertices, rounded as far as the errors allow.
+// A family of primitives, all vertices or those that simplification left, rounded as far as the errors allow.
 #ifndef LACERTA_PACK_ROUNDED_H_
 #define LACERTA_PACK_ROUNDED_H_
 
-#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "document/draco_encode.h"
 #include "document/primitive.h"
 #include "lacerta/gltf.h"
 #include "lacerta/status.h"
-#include "pack/attributed_family.h"
-#include "pack/precision.h"
+#include "pack/family_meter.h"
 
 namespace lacerta {
 
 struct RoundedFamily {
   std::vector<DracoEncoded> members;                  // in the order of the primitives
   std::vector<DracoPrecision> precisions;             // parallel
-  std::vector<std::vector<AttributeReport>> reports;  // the larger of the errors at the vertices and on the surface
-  SharedLattice lattice;
-  // Parallel to the attributes of ToAttributedMesh(kLeaveOut): total RMS of normals and tangents, or the target where
-  // that is larger; infinity for others. Empty where the surface could not be measured.
+  std::vector<std::vector<AttributeReport>> reports;  // of their attributes but POSITION; errors are the family's
+  double error = 0.0;                                 // d_S, mesh units
+  // Parallel to the attributes of FamilyMeter::original: total RMS of normals and tangents, or the target where that is
+  // larger; infinity for others. Empty where the surface could not be measured.
   std::vector<double> everywhere;
 };
 
-// All `primitives` (one mesh or meshes that touch) on one lattice of positions. Bits are first found for each attribute
-// at the vertices; but rounded positions slide along the surface and take texture and normals with them, so what is
-// decoded is measured and bits are added, where they help most for their bytes, until it meets `error` (d_S, mesh
-// units) and `targets` on 99 % of the surface. What cannot be measured (no area) is held to the errors at the vertices.
-// Parameters as in SimplifyFamily. Fails with kUnsupported where no precision meets them, and like
-// EncodeDracoPrimitive.
-StatusOr<RoundedFamily> RoundFamily(const std::vector<const Primitive*>& primitives, double error,
-                                    const AttributeTargets& targets, uint64_t texel_side,
-                                    const TexelScale& texels_per_unit);
+// `primitives` are the meter's or, if `own_errors` (against the meter's, as measured) is given, a simplification of
+// these. All get one lattice of positions and one step for each attribute. Which is cheapest is forecast triangle by
+// triangle, counting that rounded positions slide along the surface and take texture and normals with them; then what is
+// decoded is measured and the forecast corrected, until it meets the meter's targets (and `everywhere` as in
+// ErrorTargets) and no cheaper precision is expected to. What cannot be measured (no area) is held to the forecast. Where
+// `is_usable` refuses what came out, positions get finer.
+// Fails with kUnsupported where no precision meets them, and like EncodeDracoPrimitive.
+StatusOr<RoundedFamily> RoundFamily(const std::vector<const Primitive*>& primitives, const FamilyMeter& meter,
+                                    const SurfaceErrors* own_errors = nullptr,
+                                    const std::vector<double>& everywhere = {},
+                                    const std::function<bool(const RoundedFamily&)>& is_usable = nullptr);
 
 }  // namespace lacerta
 

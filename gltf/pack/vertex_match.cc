@@ -35,14 +35,14 @@ std::vector<Key> KeysOf(const Primitive& rounded, const Primitive& values, const
     const Attribute* value = values.Find(attribute.name);
     if (value == nullptr) return {};
     Key key{&value->data, {}};
-    const auto bits = precision.bits.find(attribute.name);
+    const auto lattice = precision.lattices.find(attribute.name);
     if (attribute.data.type == ComponentType::kFloat) {
       if (attribute.name == "POSITION") {
         key.lattice = precision.positions;
-      } else if (bits != precision.bits.end() && attribute.name == "NORMAL") {
+      } else if (lattice != precision.lattices.end()) {
+        key.lattice = lattice->second;
+      } else if (attribute.name == "NORMAL" && precision.normal_bits > 0) {
         key.lattice = {{-1.0f, -1.0f, -1.0f, -1.0f}, 2.0f, kDirectionBits};
-      } else if (bits != precision.bits.end()) {
-        key.lattice = FitLattice(attribute.data, bits->second);
       }
     }
     keys.push_back(key);

@@ -16,14 +16,14 @@ namespace {
 
 // The surfaces of the primitives of one mesh, one after the other.
 StatusOr<TriangleMesh> ReadMesh(const GltfDocument& document, const StatusOr<Progressive>& progressive, uint64_t mesh,
-                                const UnpackOptions& options, std::vector<std::string>* notes) {
+                                const UnpackOptions& options, std::vector<std::string>* notes, AttributedCache* cache) {
   TriangleMesh all;
   for (uint64_t p = 0; p < ArraySize(*FindElement(document.json, "meshes", mesh), "primitives"); ++p) {
     const Place place = {mesh, p};
     const Json& primitive = PrimitiveAt(document, place);
     TriangleMesh part;
     if (PrimitiveExtension(primitive, kProgressiveName) != nullptr) {
-      StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, place, options);
+      StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, place, options, cache);
       if (!surface.ok()) return surface.status().WithContext(PlaceName(document, place));
       if (!surface.value().note.empty()) notes->push_back(PlaceName(document, place) + ": " + surface.value().note);
       part = std::move(surface.value().surface);
@@ -67,11 +67,12 @@ StatusOr<FlattenResult> FlattenGltf(Span<const uint8_t> asset, const UnpackOptio
   LACERTA_ASSIGN_OR_RETURN(const std::vector<Instance> instances, CollectInstances(document));
   FlattenResult result;
   std::map<uint64_t, TriangleMesh> meshes;
+  AttributedCache cache;
   for (const Instance& instance : instances) {
     auto known = meshes.find(instance.mesh);
     if (known == meshes.end()) {
       LACERTA_ASSIGN_OR_RETURN(TriangleMesh mesh,
-                               ReadMesh(document, progressive, instance.mesh, options, &result.notes));
+                               ReadMesh(document, progressive, instance.mesh, options, &result.notes, &cache));
       known = meshes.emplace(instance.mesh, std::move(mesh)).first;
     }
     if (result.mesh.positions.size() + known->second.positions.size() > options.limits.max_vertices ||

@@ -27,6 +27,14 @@ RefinedGeometry ToArrays(ProgressiveSurface surface) {
   geometry.max = bounds.max;
   geometry.positions = MakeFloatAccessor(mesh.positions).bytes;
   if (surface.smooth_normals) geometry.normals = MakeFloatAccessor(DeriveNormals(mesh)).bytes;
+  for (VertexSoup::Attribute& attribute : surface.attributes) {
+    AccessorData values = MakeFloatAccessor(attribute.values, attribute.components);
+    if (attribute.name == "NORMAL" && attribute.components == 3) {
+      geometry.normals = std::move(values.bytes);
+    } else {
+      geometry.attributes.push_back({std::move(attribute.name), attribute.components, std::move(values.bytes)});
+    }
+  }
   AccessorData indices = MakeIndexAccessor(mesh.triangles, mesh.positions.size());
   geometry.num_indices = indices.count;
   geometry.index_type = static_cast<uint32_t>(indices.type);
@@ -47,9 +55,10 @@ StatusOr<std::vector<RefinedGeometry>> RefineParsedGltf(const std::string& json,
   document.borrowed_buffers = buffers;
   const StatusOr<Progressive> progressive = ParseProgressive(document);
   std::vector<RefinedGeometry> geometries;
+  AttributedCache cache;
   for (const std::vector<Place>& places : GroupByGeometry(document)) {
     if (PrimitiveExtension(PrimitiveAt(document, places[0]), kProgressiveName) == nullptr) continue;
-    StatusOr<ProgressiveSurface> surface = ReadRefinedSurface(document, progressive, places[0], options);
+    StatusOr<ProgressiveSurface> surface = ReadRefinedSurface(document, progressive, places[0], options, &cache);
     if (!surface.ok()) return surface.status().WithContext(PlaceName(document, places[0]));
     geometries.push_back(ToArrays(std::move(surface).value()));
     for (const Place& place : places) geometries.back().primitives.push_back({place.mesh, place.primitive});

@@ -7,7 +7,8 @@
 
 #include "document/accessor.h"
 #include "document/buffer_edit.h"
-#include "document/primitive.h"
+#include "document/draco_primitive.h"
+#include "document/normals.h"
 
 namespace lacerta {
 namespace {
@@ -28,15 +29,15 @@ bool AccessorVec3(const Json& accessor, const char* key, Vec3f* value) {
 }
 
 // The fallback must still be the base of the stream, else somebody changed the one without knowing of the other.
-Status CheckFallback(const GltfDocument& document, const Json& primitive, const GatheredStream& stream,
-                     const TriangleMesh& base) {
+Status CheckFallback(const GltfDocument& document, const Json& primitive, Span<const uint8_t> base_bytes,
+                     const std::vector<Vec3f>& base_positions) {
   const Status edited =
       InvalidData("the fallback geometry is no longer the base of the stream; a tool that does not know " +
                   std::string(kProgressiveName) + " edited the asset");
   if (const Json* draco = PrimitiveExtension(primitive, kDracoName); draco != nullptr) {
     LACERTA_ASSIGN_OR_RETURN(const uint64_t view, GetIndex(*draco, "bufferView"));
     LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(document, view));
-    if (bytes.size() != stream.base_length || std::memcmp(bytes.data(), stream.bytes.data(), bytes.size()) != 0)
+    if (bytes.size() != base_bytes.size() || std::memcmp(bytes.data(), base_bytes.data(), bytes.size()) != 0)
       return edited;
   }
   const Json* attributes = Find(primitive, "attributes");
@@ -47,7 +48,7 @@ Status CheckFallback(const GltfDocument& document, const Json& primitive, const 
       !AccessorVec3(*accessor, "max", &bounds.max)) {
     return InvalidData("the fallback has no accessor POSITION with min and max");
   }
-  if (!Near(BoundsOf(base.positions), bounds)) return edited;
+  if (!Near(BoundsOf(base_positions), bounds)) return edited;
   return Status();
 }
 
@@ -82,21 +83,50 @@ Status CheckCounts(const ProgressiveStream& announced, const DecodedMesh& decode
   return Status();
 }
 
+// A group of a stream with attributes.
+StatusOr<ProgressiveSurface> ReadGroup(const GltfDocument& document, const GatheredStream& stream,
+                                       const ProgressiveStream& announced, uint64_t index, uint64_t group,
+                                       const Json& primitive, const UnpackOptions& options, AttributedCache* cache) {
+  if (group >= announced.base_lengths.size())
+    return InvalidData("group " + std::to_string(group) + " of stream " + std::to_string(index) + " does not exist");
+  const Span<const uint8_t> part = BaseParts(stream, announced)[static_cast<size_t>(group)];
+  if (HasFallback(document, primitive)) {
+    LACERTA_ASSIGN_OR_RETURN(const Primitive base, DecodeDracoPrimitive(part, {{"POSITION", 0}}, options.limits));
+    LACERTA_RETURN_IF_ERROR(CheckFallback(document, primitive, part, Surface(base).positions));
+  }
+  const StatusOr<AttributedLevel>& decoded = cache->Get(index, stream, announced, options);
+  if (!decoded.ok()) return decoded.status();
+  const VertexSoup& soup = decoded.value().groups[static_cast<size_t>(group)];
+  ProgressiveSurface surface;
+  surface.surface = {soup.positions, soup.triangles};
+  surface.attributes = soup.attributes;
+  surface.level = decoded.value().level;
+  surface.num_levels = static_cast<int>(announced.vertex_counts.size()) - 1;
+  if (surface.level < std::min(options.level.value_or(surface.num_levels), surface.num_levels)) {
+    const Status& refinement = decoded.value().refinement;
+    surface.note = "decoded to level " + std::to_string(surface.level) + " of " + std::to_string(surface.num_levels) + ": " +
+                   (refinement.ok() ? "the rest of the data was cut off" : refinement.message());
+  }
+  return surface;
+}
+
 StatusOr<ProgressiveSurface> ReadStream(const GltfDocument& document, const StatusOr<Progressive>& progressive,
-                                        const Json& primitive, const UnpackOptions& options) {
+                                        const Json& primitive, const UnpackOptions& options, AttributedCache* cache) {
   if (!progressive.ok()) return progressive.status();
   const Json& extension = *PrimitiveExtension(primitive, kProgressiveName);
   LACERTA_ASSIGN_OR_RETURN(const uint64_t index, GetIndex(extension, "stream"));
   LACERTA_ASSIGN_OR_RETURN(const uint64_t group, GetIndex(extension, "group", 0));
   if (index >= progressive.value().streams.size())
     return InvalidData("stream " + std::to_string(index) + " does not exist");
-  if (group != 0)
-    return Unsupported("group " + std::to_string(group) + ": streams of several groups are not read by this version");
   const ProgressiveStream& announced = progressive.value().streams[static_cast<size_t>(index)];
   LACERTA_ASSIGN_OR_RETURN(const GatheredStream stream, GatherStream(document, progressive.value(), index));
+  if (!announced.base_lengths.empty()) return ReadGroup(document, stream, announced, index, group, primitive, options, cache);
+  if (group != 0) return InvalidData("group " + std::to_string(group) + " of stream " + std::to_string(index) + " does not exist");
   if (HasFallback(document, primitive)) {
     LACERTA_ASSIGN_OR_RETURN(const TriangleMesh base, DecodeBase(stream, options.limits));
-    LACERTA_RETURN_IF_ERROR(CheckFallback(document, primitive, stream, base));
+    const auto base_length = static_cast<size_t>(std::min<uint64_t>(stream.base_length, stream.bytes.size()));
+    LACERTA_RETURN_IF_ERROR(
+        CheckFallback(document, primitive, Span<const uint8_t>(stream.bytes).First(base_length), base.positions));
   }
   DecodeOptions decode;
   decode.max_level = options.level;
@@ -135,9 +165,9 @@ Bounds BoundsOf(const std::vector<Vec3f>& positions) {
 }
 
 StatusOr<ProgressiveSurface> ReadRefinedSurface(const GltfDocument& document, const StatusOr<Progressive>& progressive,
-                                                const Place& place, const UnpackOptions& options) {
+                                                const Place& place, const UnpackOptions& options, AttributedCache* cache) {
   const Json& primitive = PrimitiveAt(document, place);
-  StatusOr<ProgressiveSurface> surface = ReadStream(document, progressive, primitive, options);
+  StatusOr<ProgressiveSurface> surface = ReadStream(document, progressive, primitive, options, cache);
   if (!surface.ok()) {
     if (!HasFallback(document, primitive)) return surface.status();
     ProgressiveSurface drawn;
@@ -151,13 +181,23 @@ StatusOr<ProgressiveSurface> ReadRefinedSurface(const GltfDocument& document, co
 }
 
 StatusOr<ProgressiveSurface> ReadSurface(const GltfDocument& document, const StatusOr<Progressive>& progressive,
-                                         const Place& place, const UnpackOptions& options) {
-  LACERTA_ASSIGN_OR_RETURN(ProgressiveSurface surface, ReadRefinedSurface(document, progressive, place, options));
+                                         const Place& place, const UnpackOptions& options, AttributedCache* cache) {
+  LACERTA_ASSIGN_OR_RETURN(ProgressiveSurface surface, ReadRefinedSurface(document, progressive, place, options, cache));
   if (!surface.from_fallback) return surface;
   StatusOr<Primitive> fallback = ReadPrimitive(document, PrimitiveAt(document, place), options.limits);
   if (!fallback.ok()) return fallback.status().WithContext(surface.note + "; but it is damaged too");
   surface.surface = Surface(fallback.value());
   return surface;
+}
+
+Primitive ToPrimitive(const ProgressiveSurface& surface) {
+  const TriangleMesh& mesh = surface.surface;
+  Primitive primitive{mesh.positions.size(), mesh.triangles, {{"POSITION", MakeFloatAccessor(mesh.positions)}}};
+  if (surface.smooth_normals) primitive.attributes.push_back({"NORMAL", MakeFloatAccessor(DeriveNormals(mesh))});
+  for (const VertexSoup::Attribute& attribute : surface.attributes) {
+    primitive.attributes.push_back({attribute.name, MakeFloatAccessor(attribute.values, attribute.components)});
+  }
+  return primitive;
 }
 
 }  // namespace lacerta

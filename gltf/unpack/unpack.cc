@@ -65,9 +65,10 @@ StatusOr<std::vector<ProgressiveSurface>> ReadProgressive(Span<const uint8_t> as
   LACERTA_ASSIGN_OR_RETURN(const GltfDocument document, ParseGltf(asset, options.folder));
   const StatusOr<Progressive> progressive = ParseProgressive(document);
   std::vector<ProgressiveSurface> surfaces;
+  AttributedCache cache;
   for (const Place& place : AllPlaces(document)) {
     if (PrimitiveExtension(PrimitiveAt(document, place), kProgressiveName) == nullptr) continue;
-    StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, place, options);
+    StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, place, options, &cache);
     if (!surface.ok()) return surface.status().WithContext(PlaceName(document, place));
     surfaces.push_back(std::move(surface).value());
   }
@@ -87,17 +88,18 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
   }
   AccessorPool pool(document, geometries);
   UnpackResult result;
+  AttributedCache cache;
   for (const std::vector<Place>& places : groups) {
     const Json primitive = PrimitiveAt(document, places[0]);
     Status status;
     if (PrimitiveExtension(primitive, kProgressiveName) != nullptr) {
-      StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, places[0], options);
+      StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, places[0], options, &cache);
       if (!surface.ok()) return surface.status().WithContext(PlaceName(document, places[0]));
       if (!surface.value().note.empty())
         result.notes.push_back(PlaceName(document, places[0]) + ": " + surface.value().note);
-      ReplaceGeometry({places[0]}, places,
-                      PlainGeometry(surface.value().surface, surface.value().smooth_normals, &document), &pool,
-                      &document);
+      Primitive shown = ToPrimitive(surface.value());
+      RestoreUnits(&shown);
+      ReplaceGeometry({places[0]}, places, PlainGeometry(shown, &document), &pool, &document);
     } else if (PrimitiveExtension(primitive, kDracoName) != nullptr) {
       StatusOr<Primitive> decoded = ReadPrimitive(document, primitive, options.limits);
       if (!decoded.ok()) return decoded.status().WithContext(PlaceName(document, places[0]));

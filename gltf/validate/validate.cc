@@ -104,10 +104,11 @@ class Validator {
     }
     int num_levels = 0;
     for (int level = 0; level <= num_levels; ++level) {
+      if (caches_.size() <= static_cast<size_t>(level)) caches_.emplace_back();
       UnpackOptions options;
       options.level = level;
       options.limits = options_.limits;
-      const StatusOr<ProgressiveSurface> surface = ReadRefinedSurface(document_, progressive_, place, options);
+      const StatusOr<ProgressiveSurface> surface = ReadRefinedSurface(document_, progressive_, place, options, &caches_[static_cast<size_t>(level)]);
       if (!surface.ok()) return Error(where, surface.status().message());
       if (surface.value().from_fallback) return Error(where, surface.value().note);
       num_levels = surface.value().num_levels;
@@ -116,8 +117,11 @@ class Validator {
         return trimmed ? Note(where, surface.value().note) : Error(where, surface.value().note);
       }
       const uint64_t stream = *AsIndex(Find(*PrimitiveExtension(primitive, kProgressiveName), "stream"));
-      const double announced = progressive_.value().streams[static_cast<size_t>(stream)].errors[static_cast<size_t>(level)];
-      Measure(place, surface.value().surface, level, announced);
+      const ProgressiveStream& announced = progressive_.value().streams[static_cast<size_t>(stream)];
+      // What several groups are off together says nothing about one of them.
+      const bool is_alone = announced.base_lengths.size() <= 1;
+      Measure(place, surface.value().surface, level,
+              is_alone ? std::optional<double>(announced.errors[static_cast<size_t>(level)]) : std::nullopt);
     }
   }
 
@@ -162,6 +166,7 @@ class Validator {
   const ValidateOptions& options_;
   const StatusOr<Progressive> progressive_;
   const GltfDocument* original_ = nullptr;
+  std::vector<AttributedCache> caches_;  // one per level
   ValidationReport report_;
 };
 

@@ -1,6 +1,7 @@
 // One asset packed, beside stock Draco with the fewest bits that meet the same errors, measured in the same way:
 //   asset_report ORIGINAL.glb PACKED.glb UNPACKED.glb [--psnr DB] [--texels N] [--degrees N]
-// Prints one line of JSON. Errors are those of the worst mesh (meshes that touch count as one); UV in texels of 1024.
+// Prints one line of JSON. Errors are those of the worst mesh (meshes that touch count as one); UV in texels as the packer counts
+// them: of the asset's largest texture (at least 1024), as often as KHR_texture_transform repeats it.
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
@@ -10,18 +11,20 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "bench/gltf_surfaces.h"
 #include "document/draco_primitive.h"
 #include "document/place.h"
 #include "document/primitive.h"
 #include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
+#include "pack/attributed_family.h"
 #include "pack/family.h"
+#include "pack/texel_scale.h"
 #include "remesh/simplify_to_errors.h"
 
 namespace lacerta {
@@ -54,17 +57,20 @@ StatusOr<Asset> Read(const std::string& path) {
 struct Judge {
   std::vector<size_t> members;
   double scale = 0.0;  // of the PSNR: the scene's diagonal in mesh units
+  TexelScale texels;
+  AttributedMesh original;
   SurfaceErrorMeter meter;
-  std::vector<AttributeKind> kinds;
+  ErrorTargets units;  // one texel, one degree
 };
 
-StatusOr<AttributedMesh> Join(const std::vector<Primitive>& primitives, const std::vector<size_t>& members) {
-  std::vector<VertexSoup> soups;
-  for (const size_t member : members) soups.push_back(ToSoup(primitives[member]));
-  return WeldSoups(soups);
+StatusOr<AttributedMesh> Join(const std::vector<Primitive>& primitives, const std::vector<size_t>& members, const TexelScale& texels) {
+  std::vector<const Primitive*> own;
+  for (const size_t member : members) own.push_back(&primitives[member]);
+  return ToAttributedMesh(own, texels, OtherAttributes::kLeaveOut);
 }
 
 StatusOr<std::vector<Judge>> MakeJudges(const Asset& original) {
+  const uint64_t side = TexelSide(original.document);
   std::vector<std::vector<Place>> places;
   for (const Place& place : original.places) places.push_back({place});
   std::vector<PlacedSurface> surfaces;
@@ -72,14 +78,24 @@ StatusOr<std::vector<Judge>> MakeJudges(const Asset& original) {
   LACERTA_ASSIGN_OR_RETURN(const Families families, FindFamilies(original.document, surfaces));
   std::vector<Judge> judges;
   for (size_t f = 0; f < families.families.size(); ++f) {
-    const Family& family = families.families[f];
-    LACERTA_ASSIGN_OR_RETURN(AttributedMesh mesh, Join(original.primitives, family.members));
-    StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(mesh);
+    const std::vector<size_t>& members = families.families[f].members;
+    std::map<std::pair<size_t, uint64_t>, double> scales;
+    for (size_t m = 0; m < members.size(); ++m) {
+      for (uint64_t set = 0; set < 8; ++set) scales[{m, set}] = TexelsPerUnit(original.document, places[members[m]], set, side);
+    }
+    const TexelScale texels = [scales, side](size_t member, uint64_t set) {
+      const auto found = scales.find({member, set});
+      return found == scales.end() ? static_cast<double>(side) : found->second;
+    };
+    LACERTA_ASSIGN_OR_RETURN(AttributedMesh mesh, Join(original.primitives, members, texels));
+    StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(mesh, static_cast<double>(side));
     if (!meter.ok()) continue;  // nothing to see
     const double scale = FamilyError(families, f, 60.0) * 1000.0;
-    Judge judge{family.members, scale, std::move(meter).value(), {}};
-    for (const MeshAttribute& attribute : mesh.attributes) judge.kinds.push_back(attribute.kind);
-    judges.push_back(std::move(judge));
+    AttributeTargets one;
+    one.uv_texels = 1.0;
+    one.normal_degrees = 1.0;
+    ErrorTargets units = FamilyTargets(mesh, 1.0, one, side);
+    judges.push_back({members, scale, texels, std::move(mesh), std::move(meter).value(), std::move(units)});
   }
   return judges;
 }
@@ -88,15 +104,14 @@ StatusOr<Errors> MeasureAll(const std::vector<Judge>& judges, const std::vector<
   constexpr uint64_t kSamples = 20'000;
   Errors worst;
   for (const Judge& judge : judges) {
-    LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, Join(primitives, judge.members));
+    LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, Join(primitives, judge.members, judge.texels));
     LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, judge.meter.Measure(mesh, kSamples));
     worst.psnr = std::min(worst.psnr, Psnr(errors.distance, judge.scale));
-    for (size_t a = 0; a < judge.kinds.size(); ++a) {
-      if (judge.kinds[a] == AttributeKind::kTextureCoordinates) {
-        worst.texels = std::max(worst.texels, errors.attributes[a].rms_99);
-      } else if (judge.kinds[a] == AttributeKind::kNormal) {
-        worst.degrees = std::max(worst.degrees, errors.attributes[a].rms_99);
-      }
+    for (size_t a = 0; a < judge.original.attributes.size(); ++a) {
+      const double error = errors.attributes[a].rms_99 / judge.units.attributes[a];
+      const AttributeKind kind = judge.original.attributes[a].kind;
+      if (kind == AttributeKind::kTextureCoordinates) worst.texels = std::max(worst.texels, error);
+      if (kind == AttributeKind::kNormal || kind == AttributeKind::kTangent) worst.degrees = std::max(worst.degrees, error);
     }
   }
   return worst;
@@ -156,6 +171,51 @@ StatusOr<uint64_t> EncodeStock(const std::vector<Primitive>& primitives, const B
   return sum;
 }
 
+struct Stock {
+  Bits bits = {};
+  uint64_t bytes = 0;
+  Errors errors;
+};
+
+// The smallest of the sizes at which all errors are met: positions from the fewest bits on that meet theirs, for each the fewest bits of
+// the attributes, until finer positions no longer pay. Coarse positions move the texture, too.
+StatusOr<Stock> FewestStock(const std::vector<Primitive>& primitives, const std::vector<Judge>& judges, const Errors& wanted) {
+  constexpr int kMostBits = 20;
+  constexpr int kPatience = 2;
+  std::optional<Stock> best;
+  Stock last;
+  Bits start = {0, 6, 4};
+  int worse = 0;
+  for (int positions = 7; positions <= kMostBits && worse < kPatience; ++positions) {
+    Stock stock;
+    stock.bits = {positions, start[1], start[2]};
+    bool met = false, far = false;
+    for (;;) {
+      std::vector<Primitive> decoded;
+      LACERTA_ASSIGN_OR_RETURN(stock.bytes, EncodeStock(primitives, stock.bits, &decoded));
+      const StatusOr<Errors> errors = MeasureAll(judges, decoded);  // a group may have lost its area
+      stock.errors = errors.ok() ? errors.value() : Errors{0.0, 1e9, 1e9};
+      far = stock.errors.psnr < wanted.psnr;
+      const bool blurred = stock.errors.texels > wanted.texels, tilted = stock.errors.degrees > wanted.degrees;
+      met = !far && !blurred && !tilted;
+      if (met || far || (blurred && stock.bits[1] == kMostBits) || (tilted && stock.bits[2] == kMostBits)) break;
+      stock.bits[1] += blurred;
+      stock.bits[2] += tilted;
+      // Many bits more that do not help: positions are too coarse.
+      if ((blurred && stock.bits[1] > start[1] + 8) || (tilted && stock.bits[2] > start[2] + 6)) break;
+    }
+    last = stock;
+    if (!met) continue;
+    ++worse;
+    // Finer positions ask for no more bits of the attributes, and for hardly fewer than two less.
+    start = {0, std::max(stock.bits[1] - 2, 6), std::max(stock.bits[2] - 2, 4)};
+    if (best.has_value() && stock.bytes >= best->bytes) continue;
+    worse = 0;
+    best = stock;
+  }
+  return best.value_or(last);
+}
+
 uint64_t BorderEdges(const TriangleMesh& mesh) {
   const auto key = [](const Vec3f& p) { return std::make_tuple(p.x, p.y, p.z); };
   std::map<std::tuple<float, float, float>, size_t> ids;
@@ -178,37 +238,14 @@ Status Report(const std::vector<std::string>& files, const Errors& wanted) {
   LACERTA_ASSIGN_OR_RETURN(const FlattenResult before, FlattenGltf(ReadFile(files[0]).value(), {}));
   LACERTA_ASSIGN_OR_RETURN(const FlattenResult after, FlattenGltf(ReadFile(files[2]).value(), {}));
 
-  // Each kind of bits from few to many, positions first: coarse positions move the texture too.
-  Bits bits = {7, 6, 4};
-  constexpr int kMostBits = 20;
-  std::vector<Primitive> decoded;
-  Errors stock;
-  uint64_t stock_bytes = 0;
-  for (;;) {
-    LACERTA_ASSIGN_OR_RETURN(stock_bytes, EncodeStock(original.primitives, bits, &decoded));
-    const StatusOr<Errors> errors = MeasureAll(judges, decoded);  // a group may have lost its area
-    stock = errors.ok() ? errors.value() : Errors{0.0, 1e9, 1e9};
-    const bool far = stock.psnr < wanted.psnr, blurred = stock.texels > wanted.texels, tilted = stock.degrees > wanted.degrees;
-    if (!far && !blurred && !tilted) break;
-    const Bits last = bits;
-    if (far) {
-      bits[0] = std::min(bits[0] + 1, kMostBits);
-    } else {
-      if (blurred) bits[1] = std::min(bits[1] + 1, kMostBits);
-      if (tilted) bits[2] = std::min(bits[2] + 1, kMostBits);
-      // More bits of texture coordinates and normals do not help where positions slide.
-      if (blurred && bits[1] > 12 && bits[0] < kMostBits) ++bits[0], bits[1] = 10;
-      if (tilted && bits[2] > 10 && bits[0] < kMostBits) ++bits[0], bits[2] = 6;
-    }
-    if (bits == last) break;
-  }
+  LACERTA_ASSIGN_OR_RETURN(const Stock stock, FewestStock(original.primitives, judges, wanted));
   uint64_t vertices = 0;
   for (const Primitive& primitive : original.primitives) vertices += primitive.num_vertices;
   std::printf("{\"vertices\": %llu, \"psnr\": %.2f, \"texels\": %.3f, \"degrees\": %.3f, \"borderEdgesBefore\": %llu, \"borderEdgesAfter\": %llu, "
               "\"stockBytes\": %llu, \"stockBits\": [%d, %d, %d], \"stockPsnr\": %.2f, \"stockTexels\": %.3f, \"stockDegrees\": %.3f}\n",
               static_cast<unsigned long long>(vertices), ours.psnr, ours.texels, ours.degrees,
               static_cast<unsigned long long>(BorderEdges(before.mesh)), static_cast<unsigned long long>(BorderEdges(after.mesh)),
-              static_cast<unsigned long long>(stock_bytes), bits[0], bits[1], bits[2], stock.psnr, stock.texels, stock.degrees);
+              static_cast<unsigned long long>(stock.bytes), stock.bits[0], stock.bits[1], stock.bits[2], stock.errors.psnr, stock.errors.texels, stock.errors.degrees);
   return Status();
 }
 

@@ -95,8 +95,9 @@ struct PackResult {
 };
 
 // Packs a .glb or .gltf. Every mesh of one primitive with positions only (and normals that can be derived from them)
-// becomes progressive; other triangles are stored as KHR_draco_mesh_compression, and what neither can hold stays as it
-// was, each with its reason in the report. All else in the asset passes through: nodes, materials, images byte for
+// becomes progressive; so do surfaces with attributes, all primitives that touch in one stream, where that is smaller (or
+// levels are always wanted). Other triangles are stored as KHR_draco_mesh_compression, and what neither can hold stays as
+// it was, each with its reason in the report. All else in the asset passes through: nodes, materials, images byte for
 // byte, animations, skins, extras, unknown extensions. Fails with kInvalidData, naming mesh, primitive, accessor and
 // index; kUnsupported for compressions and versions that it does not know; kInvalidArgument for options that do not go
 // together.
@@ -119,6 +120,8 @@ struct ProgressiveSurface {
   uint64_t mesh = 0;
   uint64_t primitive = 0;
   TriangleMesh surface;
+  // Of streams that carry attributes: one value per vertex of `surface`, which has a vertex for each side of a seam.
+  std::vector<VertexSoup::Attribute> attributes;
   bool smooth_normals = false;  // the asset wants normals derived from the surface; else flat shading
   int level = 0;                // of `surface`
   int num_levels = 0;           // levels above the base that the asset announces

@@ -18,6 +18,12 @@ struct PrimitiveIndex {
   uint64_t primitive = 0;  // of the primitive in it
 };
 
+struct RefinedAttribute {
+  std::string name;         // as in glTF
+  uint32_t components = 1;  // 1..4: SCALAR, VEC2, VEC3, VEC4
+  Bytes values;             // #V x components floats
+};
+
 // What primitives with LACERTA_mesh_progressive are to show instead of their fallback. The arrays are little endian and
 // without gaps, as glTF accessors want them.
 struct RefinedGeometry {
@@ -30,6 +36,7 @@ struct RefinedGeometry {
   Vec3f min, max;            // bounds of the positions
   Bytes positions;           // #V x 3 floats
   Bytes normals;             // #V x 3 floats of length 1; empty where the asset asks for flat shading
+  std::vector<RefinedAttribute> attributes;  // all others that the stream carries
   uint64_t num_indices = 0;  // 3 #F
   uint32_t index_type = 0;   // glTF componentType: 5123 (16 bits) or 5125 (32 bits)
   Bytes indices;             // #F x 3

@@ -219,6 +219,12 @@ inline void ShowGeometry(const RefinedGeometry& geometry, tinygltf::Model* model
     attributes["NORMAL"] = AddAccessor(geometry.normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
                                        geometry.num_vertices, TINYGLTF_TARGET_ARRAY_BUFFER, model);
   }
+  for (const RefinedAttribute& attribute : geometry.attributes) {
+    // tinygltf's TINYGLTF_TYPE_VEC2 to VEC4 are the numbers of components.
+    const int type = attribute.components == 1 ? TINYGLTF_TYPE_SCALAR : static_cast<int>(attribute.components);
+    attributes[attribute.name] = AddAccessor(attribute.values, TINYGLTF_COMPONENT_TYPE_FLOAT, type, geometry.num_vertices,
+                                             TINYGLTF_TARGET_ARRAY_BUFFER, model);
+  }
   const int indices = AddAccessor(geometry.indices, static_cast<int>(geometry.index_type), TINYGLTF_TYPE_SCALAR,
                                   geometry.num_indices, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, model);
   for (const PrimitiveIndex& index : geometry.primitives) {
@@ -255,7 +261,7 @@ inline std::string Describe(const tinygltf::Model& model, const RefinedGeometry&
 }  // namespace tinygltf_internal
 
 // Gives every primitive with LACERTA_mesh_progressive the geometry of its stream: new accessors for POSITION, for the
-// indices and, where the extension says so, for NORMAL, in a new buffer at the end of the model. The primitive loses
+// indices, for what else the stream carries and, where the extension says so, for NORMAL, in a new buffer at the end of the model. The primitive loses
 // the extension, and KHR_draco_mesh_compression with it; both leave extensionsUsed and extensionsRequired when nothing
 // uses them any more. All else stays as it is, the stream's bytes and the accessors of the fallback included.
 // Primitives whose stream is damaged, or does not fit the fallback any more, keep their fallback and the extension, and

@@ -68,6 +68,18 @@ TEST(Accessor, AppliesSparseValues) {
   EXPECT_THAT(MessageOf(document), HasSubstr("more than the bufferView"));
 }
 
+TEST(Accessor, RangesOfComponents) {
+  const AccessorData pairs = MakeFloatAccessor({1, -2, 0.5f, 7, 3, 0}, 2);
+  ASSERT_EQ(pairs.count, 3u);
+  const std::vector<ComponentRange> ranges = ComponentRanges(pairs);
+  ASSERT_EQ(ranges.size(), 2u);
+  EXPECT_EQ(ranges[0].low, 0.5f);
+  EXPECT_EQ(ranges[0].high, 3.0f);
+  EXPECT_EQ(ranges[1].low, -2.0f);
+  EXPECT_EQ(ranges[1].high, 7.0f);
+  EXPECT_TRUE(ComponentRanges(MakeFloatAccessor({}, 2)).empty());
+}
+
 TEST(Accessor, RefusesWhatIsNotThere) {
   EXPECT_THAT(MessageOf(Floats(6, {{"count", 3}})), AllOf(HasSubstr("accessor 0"), HasSubstr("3 elements")));
   EXPECT_THAT(MessageOf(Floats(6, {{"count", 18446744073709551615u}})), HasSubstr("accessor 0"));

@@ -42,7 +42,7 @@ double LargestMove(const Primitive& primitive, const Primitive& decoded) {
   return largest;
 }
 
-DracoPrecision Precision(const Vec3f& min, const Vec3f& max, int bits) { return {PositionLattice(min, max, bits), {}}; }
+DracoPrecision Precision(const Vec3f& min, const Vec3f& max, int bits) { return {PositionLattice(min, max, bits), {}, 0}; }
 
 TEST(DracoEncode, KeepsIntegersAndTheLattice) {
   constexpr int kBits = 9;
@@ -71,7 +71,8 @@ TEST(DracoEncode, DecodersGetTheRoundedValues) {
   primitive.attributes.push_back({"COLOR_0", texture});
   primitive.attributes.push_back({"_EXACT", MakeFloatAccessor(mesh.positions)});
   DracoPrecision precision = Precision({-1, -4, 3}, {2, 0, 7}, 11);
-  precision.bits = {{"NORMAL", 7}, {"COLOR_0", 9}};
+  precision.lattices = {{"COLOR_0", LatticeOfStep({{-1.5f, -4.0f, 3.0f, 0.0f}, 5.0f, 0}, 0.01f)}};
+  precision.normal_bits = 7;
   const auto encoded = EncodeDracoPrimitive(primitive, precision);
   ASSERT_TRUE(encoded.ok()) << encoded.status().message();
   const Primitive rounded = RoundAttributes(primitive, precision);

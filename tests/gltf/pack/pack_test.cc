@@ -164,7 +164,7 @@ TEST(Pack, ImagesAnimationsAndMorphTargetsStayByteForByte) {
   const Bytes glb = builder.Glb();
   const auto packed = PackGltf(glb, Options(Fallback::kDraco));
   ASSERT_TRUE(packed.ok()) << packed.status().message();
-  EXPECT_EQ(packed.value().report.primitives[0].storage, PrimitiveStorage::kDraco);
+  EXPECT_EQ(packed.value().report.primitives[0].storage, PrimitiveStorage::kDraco) << packed.value().report.primitives[0].reason;
   const GltfDocument before = ParseGltf(glb, "").value();
   const GltfDocument after = ParseGltf(packed.value().glb, "").value();
   // The target holds the positions, so the two go together in whatever order.

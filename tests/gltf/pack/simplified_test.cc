@@ -26,17 +26,11 @@ Primitive Half(const TriangleMesh& ball, bool upper) {
   Primitive primitive;
   primitive.num_vertices = half.positions.size();
   primitive.triangles = half.triangles;
-  AccessorData texture;
-  texture.components = 2;
-  texture.count = half.positions.size();
-  for (const Vec3f& p : half.positions) {
-    const float uv[2] = {0.5f + 0.4f * p.x, 0.5f + 0.4f * p.y};
-    const auto* raw = reinterpret_cast<const uint8_t*>(uv);
-    texture.bytes.insert(texture.bytes.end(), raw, raw + sizeof(uv));
-  }
+  std::vector<float> texture;
+  for (const Vec3f& p : half.positions) texture.insert(texture.end(), {0.5f + 0.4f * p.x, 0.5f + 0.4f * p.y});
   primitive.attributes = {{"POSITION", MakeFloatAccessor(half.positions)},
                           {"NORMAL", MakeFloatAccessor(DeriveNormals(ball))},
-                          {"TEXCOORD_0", texture}};
+                          {"TEXCOORD_0", MakeFloatAccessor(texture, 2)}};
   return primitive;
 }
 
@@ -59,7 +53,8 @@ TEST(Simplified, HalvesStayJoinedAndMeetTheErrors) {
   const Primitive upper = Half(ball, true);
   const Primitive lower = Half(ball, false);
   const double error = DistanceOfPsnr(55.0, BoundingBoxDiagonal(ball));
-  const auto family = SimplifyFamily({&upper, &lower}, error, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
+  const FamilyMeter meter({&upper, &lower}, error, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
+  const auto family = SimplifyFamily(meter);
   ASSERT_TRUE(family.ok()) << family.status().message();
   ASSERT_EQ(family.value().members.size(), 2u);
   EXPECT_LE(family.value().error, error);
@@ -80,7 +75,7 @@ TEST(Simplified, HalvesStayJoinedAndMeetTheErrors) {
 TEST(Simplified, RefusesWhatCannotBeInterpolated) {
   Primitive primitive = Half(testing::WavySphere(8, 12), true);
   primitive.attributes.push_back({"_MINE", primitive.attributes[0].data});
-  const auto family = SimplifyFamily({&primitive}, 0.01, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
+  const auto family = SimplifyFamily(FamilyMeter({&primitive}, 0.01, {}, 1024, [](size_t, uint64_t) { return 1024.0; }));
   EXPECT_EQ(family.status().code(), StatusCode::kUnsupported);
 }
 

@@ -13,7 +13,7 @@ Primitive Plain(const TriangleMesh& mesh) {
 
 TEST(VertexMatch, FindsTheOrderOfDraco) {
   const Primitive primitive = Plain(testing::WavySphere(8, 12));
-  const DracoPrecision precision = {PositionLattice({-2, -2, -2}, {2, 2, 2}, 12), {}};
+  const DracoPrecision precision = {PositionLattice({-2, -2, -2}, {2, 2, 2}, 12), {}, 0};
   const Primitive decoded = EncodeDracoPrimitive(primitive, precision).value().decoded;
   const auto order = MatchVertices(RoundAttributes(primitive, precision), decoded, precision, {});
   ASSERT_TRUE(order.has_value());
@@ -33,7 +33,7 @@ TEST(VertexMatch, RefusesTwinsThatDifferElsewhere) {
   const auto twin = static_cast<uint32_t>(mesh.positions.size() - 1);
   for (uint32_t& index : mesh.triangles[0]) index = index == 0 ? twin : index;
   const Primitive primitive = Plain(mesh);
-  const DracoPrecision precision = {PositionLattice({-2, -2, -2}, {2, 2, 2}, 12), {}};
+  const DracoPrecision precision = {PositionLattice({-2, -2, -2}, {2, 2, 2}, 12), {}, 0};
   const Primitive decoded = EncodeDracoPrimitive(primitive, precision).value().decoded;
   const Primitive rounded = RoundAttributes(primitive, precision);
   std::vector<Vec3f> offsets(mesh.positions.size());

@@ -1,0 +1,42 @@
+#include "pack/family_meter.h"
+
+#include <utility>
+
+namespace lacerta {
+
+FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error, const AttributeTargets& targets,
+                         uint64_t texel_side, TexelScale texels_per_unit)
+    : primitives_(std::move(primitives)), error_(error), attribute_targets_(targets),
+      texels_per_unit_(std::move(texels_per_unit)) {
+  StatusOr<AttributedMesh> original = ToAttributedMesh(primitives_, texels_per_unit_, OtherAttributes::kLeaveOut);
+  StatusOr<SurfaceErrorMeter> meter = original.status();
+  if (original.ok()) meter = SurfaceErrorMeter::Create(original.value(), static_cast<double>(texel_side));
+  status_ = meter.status();
+  if (!meter.ok()) return;
+  original_ = std::move(original).value();
+  meter_ = std::move(meter).value();
+  targets_ = FamilyTargets(original_, error, targets, texel_side);
+  leaves_out_ = HasOtherAttributes(primitives_);
+}
+
+StatusOr<SurfaceErrors> FamilyMeter::Measure(const std::vector<const Primitive*>& stored) const {
+  constexpr uint64_t kSamples = 100'000;
+  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh,
+                           ToAttributedMesh(stored, texels_per_unit_, OtherAttributes::kLeaveOut));
+  return meter_->Measure(mesh, kSamples);
+}
+
+std::optional<size_t> FamilyMeter::IndexOf(const std::string& soup_name) const {
+  for (size_t a = 0; a < original_.attributes.size(); ++a) {
+    if (original_.attributes[a].name == soup_name) return a;
+  }
+  return std::nullopt;
+}
+
+double FamilyMeter::Reported(const SurfaceErrors& errors, size_t attribute) const {
+  const double error = errors.attributes[attribute].rms_99;
+  if (original_.attributes[attribute].kind != AttributeKind::kTextureCoordinates) return error;
+  return error * attribute_targets_.uv_texels / targets_.attributes[attribute];  // of the scale that the target is in
+}
+
+}  // namespace lacerta

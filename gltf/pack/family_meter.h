@@ -1,0 +1,61 @@
+// What a viewer sees of a family of primitives once they are stored anew, held against the originals.
+#ifndef LACERTA_PACK_FAMILY_METER_H_
+#define LACERTA_PACK_FAMILY_METER_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "document/primitive.h"
+#include "lacerta/attributed_mesh.h"
+#include "lacerta/gltf.h"
+#include "lacerta/status.h"
+#include "pack/attributed_family.h"
+#include "remesh/simplify_to_errors.h"
+
+namespace lacerta {
+
+class FamilyMeter {
+ public:
+  // `error` (d_S, mesh units) and `targets` (RMS over the 99 % of the area where it is least) are what is allowed;
+  // `texel_side` is the side of the texture that texels are of. Refers to the primitives.
+  FamilyMeter(std::vector<const Primitive*> primitives, double error, const AttributeTargets& targets,
+              uint64_t texel_side, TexelScale texels_per_unit);
+
+  // Not OK where there is no area, so nothing to measure: nothing below but the first five is to be called then.
+  const Status& status() const { return status_; }
+  const std::vector<const Primitive*>& primitives() const { return primitives_; }
+  const AttributeTargets& attribute_targets() const { return attribute_targets_; }
+  const TexelScale& texels_per_unit() const { return texels_per_unit_; }
+  double error() const { return error_; }
+
+  const AttributedMesh& original() const { return original_; }  // without what ToAttributedMesh leaves out
+  const SurfaceErrorMeter& meter() const { return *meter_; }
+  const ErrorTargets& targets() const { return targets_; }
+  bool leaves_out() const { return leaves_out_; }  // joints, application attributes
+
+  // Of primitives stored in the order of the originals. Fails where one has lost its area.
+  StatusOr<SurfaceErrors> Measure(const std::vector<const Primitive*>& stored) const;
+
+  // The attribute of the original whose name in the surface (SoupName) this is; empty where it was left out.
+  std::optional<size_t> IndexOf(const std::string& soup_name) const;
+
+  // An error in the unit of the attribute targets.
+  double Reported(const SurfaceErrors& errors, size_t attribute) const;
+
+ private:
+  const std::vector<const Primitive*> primitives_;
+  const double error_;
+  const AttributeTargets attribute_targets_;
+  const TexelScale texels_per_unit_;
+  Status status_;
+  AttributedMesh original_;
+  std::optional<SurfaceErrorMeter> meter_;
+  ErrorTargets targets_;
+  bool leaves_out_ = false;
+};
+
+}  // namespace lacerta
+
+#endif  // LACERTA_PACK_FAMILY_METER_H_

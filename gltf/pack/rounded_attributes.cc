@@ -1,0 +1,98 @@
+#include "pack/rounded_attributes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <utility>
+
+namespace lacerta {
+namespace {
+
+bool BeginsWith(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
+
+// Target, scale, and what kind it is; empty where it has to stay exact.
+std::optional<RoundedAttribute> ToleranceOf(const Attribute& attribute, size_t member, const AttributeTargets& targets,
+                                            const TexelScale& texels_per_unit) {
+  const std::string& name = attribute.name;
+  if (attribute.data.type != ComponentType::kFloat) return std::nullopt;
+  RoundedAttribute result;
+  result.name = SoupName(attribute, member, texels_per_unit);
+  const double components = std::sqrt(attribute.data.components);  // colors' and weights' targets are per component
+  if ((name == "NORMAL" && attribute.data.components == 3) || (name == "TANGENT" && attribute.data.components == 4)) {
+    result.target = targets.normal_degrees;
+    result.direction = true;
+    result.octahedral = name == "NORMAL";
+    result.unit = "degrees";
+  } else if (BeginsWith(name, "TEXCOORD_")) {
+    const uint64_t set = std::strtoull(name.c_str() + std::char_traits<char>::length("TEXCOORD_"), nullptr, 10);
+    result.target = targets.uv_texels;
+    result.scale = texels_per_unit(member, set);
+    result.unit = "texels";
+  } else if (BeginsWith(name, "COLOR_")) {
+    result.target = targets.color * components;
+  } else if (BeginsWith(name, "WEIGHTS_")) {
+    result.target = targets.weight * components;
+    result.is_shown = false;
+  } else {
+    return std::nullopt;
+  }
+  return result;
+}
+
+bool IsFinite(const AccessorData& data) {
+  for (uint64_t i = 0; i < data.count; ++i) {
+    for (uint32_t c = 0; c < data.components; ++c) {
+      if (!std::isfinite(data.Float(i, c))) return false;
+    }
+  }
+  return true;
+}
+
+int BitsAtOrAbove(int level) { return (level + kLevelsPerBit - 1) / kLevelsPerBit; }
+
+}  // namespace
+
+int RoundedAttribute::FirstLevel() const {
+  constexpr int kLeastOctahedralBits = 3;
+  return kLevelsPerBit * (octahedral ? kLeastOctahedralBits : 1);
+}
+
+int RoundedAttribute::AtOrAbove(int level) const {
+  const int least = std::max(level, FirstLevel());
+  return octahedral ? kLevelsPerBit * BitsAtOrAbove(least) : least;
+}
+
+Lattice RoundedAttribute::LatticeAt(const Part& part, int level) const {
+  return LatticeOfStep(part.box, range * std::exp2(-static_cast<float>(level) / kLevelsPerBit));
+}
+
+AccessorData RoundedAttribute::RoundedAt(const Primitive& member, const Part& part, int level) const {
+  const AccessorData& data = member.attributes[part.index].data;
+  if (level > kMostLevel) return data;
+  return octahedral ? RoundOctahedral(data, BitsAtOrAbove(level)) : RoundToLattice(data, LatticeAt(part, level));
+}
+
+std::vector<RoundedAttribute> RoundedAttributesOf(const std::vector<const Primitive*>& primitives,
+                                                  const AttributeTargets& targets, const TexelScale& scale) {
+  std::vector<RoundedAttribute> result;
+  for (size_t m = 0; m < primitives.size(); ++m) {
+    for (size_t i = 0; i < primitives[m]->attributes.size(); ++i) {
+      const Attribute& attribute = primitives[m]->attributes[i];
+      std::optional<RoundedAttribute> own = ToleranceOf(attribute, m, targets, scale);
+      if (!own.has_value() || !IsFinite(attribute.data)) continue;
+      auto known = std::find_if(result.begin(), result.end(), [&](const RoundedAttribute& other) {
+        return other.name == own->name && other.octahedral == own->octahedral && other.direction == own->direction;
+      });
+      if (known == result.end()) known = result.insert(result.end(), std::move(*own));
+      const Lattice box = FitLattice(attribute.data, 1);
+      known->parts.push_back({m, i, box});
+      known->range = std::max(known->range, box.range);
+      const uint32_t coded = known->octahedral ? 2 : attribute.data.components;
+      known->num_numbers += static_cast<double>(attribute.data.count) * coded;
+    }
+  }
+  return result;
+}
+
+}  // namespace lacerta

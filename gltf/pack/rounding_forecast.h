@@ -1,0 +1,54 @@
+// What rounding will do to the errors of a family, forecast triangle by triangle. No closest points are searched for:
+// within a triangle everything is linear, and what moves within its plane takes the attributes with it.
+#ifndef LACERTA_PACK_ROUNDING_FORECAST_H_
+#define LACERTA_PACK_ROUNDING_FORECAST_H_
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "document/primitive.h"
+#include "lacerta/mesh.h"
+#include "pack/rounded_attributes.h"
+
+namespace lacerta {
+
+// Positions of a family rounded to one lattice.
+struct RoundedPositions {
+  Lattice lattice;
+  double distance = 0.0;       // RMS over the surface of how far it moves along its normals
+  double flipped = 0.0;        // share of its area that looks to the other side
+  std::vector<double> slides;  // for each attribute the RMS by which its values slide along, as `Rounded`
+};
+
+class RoundingForecast {
+ public:
+  // Refers to its arguments.
+  RoundingForecast(const std::vector<const Primitive*>& primitives, const std::vector<RoundedAttribute>& attributes);
+
+  // Lattice over the box of all positions in steps of its longest side / 2^(level / kLevelsPerBit); level >= 1.
+  const RoundedPositions& Positions(int level);
+
+  // RMS of an attribute rounded at a level, in the unit of its target, over the 99 % of the surface where it is least;
+  // of other than texture coordinates and directions over all of it. 0 beyond kMostLevel.
+  double Rounded(size_t attribute, int level);
+
+  // The level at which a step moves positions by about `error`.
+  int StartLevel(double error) const;
+
+ private:
+  double RmsOf(const RoundedAttribute& attribute, std::vector<std::pair<double, double>>* squares) const;
+  double SlideOf(const RoundedAttribute& attribute, const std::vector<std::vector<Vec3f>>& moved) const;
+
+  const std::vector<const Primitive*>& primitives_;
+  const std::vector<RoundedAttribute>& attributes_;
+  std::vector<TriangleMesh> surfaces_;  // of the primitives
+  Lattice box_;
+  bool has_area_ = false;
+  std::map<int, RoundedPositions> positions_;
+  std::map<std::pair<size_t, int>, double> rounded_;
+};
+
+}  // namespace lacerta
+
+#endif  // LACERTA_PACK_ROUNDING_FORECAST_H_

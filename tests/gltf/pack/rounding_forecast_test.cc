@@ -1,0 +1,120 @@
+#include "pack/rounding_forecast.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "document/normals.h"
+#include "gltf/test_assets.h"
+#include "lacerta/surface_distance.h"
+
+namespace lacerta {
+namespace {
+
+Primitive Textured() {
+  const TriangleMesh mesh = testing::WavySphere(24, 36);
+  Primitive primitive;
+  primitive.num_vertices = mesh.positions.size();
+  primitive.triangles = mesh.triangles;
+  std::vector<float> texture;
+  for (const Vec3f& p : mesh.positions) texture.insert(texture.end(), {0.5f + 0.45f * p.x, 0.5f + 0.45f * p.y});
+  primitive.attributes = {{"POSITION", MakeFloatAccessor(mesh.positions)},
+                          {"NORMAL", MakeFloatAccessor(DeriveNormals(mesh))},
+                          {"TEXCOORD_0", MakeFloatAccessor(texture, 2)},
+                          {"_MINE", MakeFloatAccessor(mesh.positions)}};
+  return primitive;
+}
+
+// RMS over the surface, by many samples of a difference that is linear on every triangle.
+template <typename ErrorAt>
+double SampledRms(const TriangleMesh& surface, const ErrorAt& error_at) {
+  constexpr int kSide = 8;
+  double sum = 0.0, area_sum = 0.0;
+  for (const Triangle& t : surface.triangles) {
+    const Vec3d a = Vec3Cast<double>(surface.positions[t[0]]);
+    const double area = Norm(Cross(Vec3Cast<double>(surface.positions[t[1]]) - a, Vec3Cast<double>(surface.positions[t[2]]) - a));
+    int count = 0;
+    double squares = 0.0;
+    for (int i = 0; i < kSide; ++i) {
+      for (int j = 0; i + j < kSide; ++j, ++count) {
+        const double u = (i + 1.0 / 3) / kSide, v = (j + 1.0 / 3) / kSide;
+        const double error = error_at(t, 1 - u - v, u, v);
+        squares += error * error;
+      }
+    }
+    sum += area * squares / count;
+    area_sum += area;
+  }
+  return std::sqrt(sum / area_sum);
+}
+
+TEST(RoundingForecast, AttributesInTheUnitsOfTheirTargets) {
+  const Primitive primitive = Textured();
+  const std::vector<const Primitive*> primitives = {&primitive};
+  const auto attributes = RoundedAttributesOf(primitives, {}, [](size_t, uint64_t) { return 1024.0; });
+  ASSERT_EQ(attributes.size(), 2u);  // nobody said how exact _MINE has to be
+  EXPECT_EQ(attributes[0].unit, "degrees");
+  EXPECT_EQ(attributes[1].unit, "texels");
+  RoundingForecast forecast(primitives, attributes);
+  const AccessorData& texture = primitive.attributes[2].data;
+  const int level = 7 * kLevelsPerBit + 1;
+  const AccessorData rounded = attributes[1].RoundedAt(primitive, attributes[1].parts[0], level);
+  const double sampled = 1024.0 * SampledRms(Surface(primitive), [&](const Triangle& t, double a, double b, double c) {
+    double squares = 0.0;
+    for (uint32_t i = 0; i < 2; ++i) {
+      const auto at = [&](size_t k) { return rounded.Float(t[k], i) - texture.Float(t[k], i); };
+      squares += std::pow(a * at(0) + b * at(1) + c * at(2), 2.0);
+    }
+    return std::sqrt(squares);
+  });
+  EXPECT_LT(forecast.Rounded(1, level), sampled);  // without the worst hundredth
+  EXPECT_GT(forecast.Rounded(1, level), 0.9 * sampled);
+  EXPECT_EQ(forecast.Rounded(1, kMostLevel + 1), 0.0);
+  // A bit more is half the error.
+  EXPECT_NEAR(forecast.Rounded(1, level + kLevelsPerBit), 0.5 * forecast.Rounded(1, level), 0.1 * forecast.Rounded(1, level));
+  EXPECT_GT(forecast.Rounded(0, 5 * kLevelsPerBit), 1.0);  // degrees
+  EXPECT_LT(forecast.Rounded(0, 5 * kLevelsPerBit), 3.0);
+}
+
+TEST(RoundingForecast, PositionsAndWhatSlidesOnThem) {
+  const Primitive primitive = Textured();
+  const std::vector<const Primitive*> primitives = {&primitive};
+  const auto attributes = RoundedAttributesOf(primitives, {}, [](size_t, uint64_t) { return 1024.0; });
+  RoundingForecast forecast(primitives, attributes);
+  const TriangleMesh surface = Surface(primitive);
+  const double diagonal = BoundingBoxDiagonal(surface);
+  for (const double psnr : {55.0, 70.0}) {
+    const double error = DistanceOfPsnr(psnr, diagonal);
+    const RoundedPositions& positions = forecast.Positions(forecast.StartLevel(error));
+    EXPECT_LE(positions.distance, 1.5 * error);
+    EXPECT_GE(positions.distance, error / 1.5);
+    TriangleMesh moved = surface;
+    for (Vec3f& position : moved.positions) {
+      for (int c = 0; c < 3; ++c) {
+        const auto component = static_cast<uint32_t>(c);
+        position[c] = positions.lattice.At(positions.lattice.Round(position[c], component), component);
+      }
+    }
+    const double measured = MeasureSurfaceDistance(surface, moved).value().Rms();
+    EXPECT_LE(positions.distance, 1.3 * measured);
+    EXPECT_GE(positions.distance, 0.9 * measured);
+    // The texture goes with x and y: 0.45 of what the surface slides within itself.
+    EXPECT_GT(positions.slides[1], 0.2 * 1024.0 * positions.distance);
+    EXPECT_LT(positions.slides[1], 1.0 * 1024.0 * positions.distance);
+  }
+  EXPECT_EQ(forecast.StartLevel(0.0), kMostLevel);
+}
+
+TEST(RoundingForecast, SurfacesWithoutArea) {
+  Primitive primitive = Textured();
+  primitive.triangles = {{0, 0, 1}};
+  const std::vector<const Primitive*> primitives = {&primitive};
+  const auto attributes = RoundedAttributesOf(primitives, {}, [](size_t, uint64_t) { return 1024.0; });
+  RoundingForecast forecast(primitives, attributes);
+  EXPECT_GT(forecast.Positions(8).distance, 0.0);  // of the corners
+  EXPECT_EQ(forecast.Positions(8).slides[1], 0.0);
+  EXPECT_GT(forecast.Positions(8).lattice.range, 0.0f);
+}
+
+}  // namespace
+}  // namespace lacerta
