@@ -48,10 +48,10 @@ Status AttributeDecoder::AddLevel(const SurfaceLevel& surface, RangeDecoder* cod
   return Status();
 }
 
-std::vector<Triangle> AttributeDecoder::Corners(size_t num_split) const {
-  const std::vector<Triangle> triangles = wedges_.level < num_levels_ ? RefineTriangles(wedges_.topology) : wedges_.topology.triangles;
+std::vector<Triangle> AttributeDecoder::Corners(int level, size_t num_split) const {
+  const std::vector<Triangle> triangles = wedges_.level < level ? RefineTriangles(wedges_.topology) : wedges_.topology.triangles;
   std::vector<Triangle> corners(num_split, {kNone, kNone, kNone});
-  for (uint32_t f = 0; f < triangles.size(); ++f) corners[wedges_.SurfaceFaceAt(num_levels_, f)] = triangles[f];
+  for (uint32_t f = 0; f < triangles.size(); ++f) corners[wedges_.SurfaceFaceAt(level, f)] = triangles[f];
   return corners;
 }
 

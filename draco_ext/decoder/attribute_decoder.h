@@ -30,8 +30,9 @@ class AttributeDecoder {
   // value is not finite; nothing has been appended then.
   Status AddLevel(const SurfaceLevel& surface, RangeDecoder* coder, LevelAttribute* attribute);
 
-  // Rows at the corners of the split triangles of the finest level so far, kNoValue x 3 where the group has not got the attribute.
-  std::vector<Triangle> Corners(size_t num_split) const;
+  // Rows at the corners of the split triangles of `level`, kNoValue x 3 where the group has not got the attribute. level: the finest one
+  // of the mesh, which is the one before that of AddLevel where another attribute failed there.
+  std::vector<Triangle> Corners(int level, size_t num_split) const;
 
  private:
   AttributeDecoder(AttributeHeader header, AttributeWedges wedges)

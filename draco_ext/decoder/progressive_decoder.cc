@@ -273,6 +273,7 @@ Status ProgressiveDecoder::Append(Span<const uint8_t> bytes) {
   s.pending.insert(s.pending.end(), bytes.begin(), bytes.end());
   size_t used = 0;
   const int shown_before = s.num_states;
+  size_t bytes_of_shown = s.bytes_used;
   while (!s.done()) {
     const Span<const uint8_t> rest = Span<const uint8_t>(s.pending.data(), s.pending.size()).Subspan(used);
     const bool was_header = !s.header;
@@ -281,10 +282,15 @@ Status ProgressiveDecoder::Append(Span<const uint8_t> bytes) {
     if (!taken.ok() || !taken.value()) break;
     used += *taken.value();
     if (!s.layers || was_header) s.bytes_used += *taken.value();
+    if (was_header) bytes_of_shown = s.bytes_used;
   }
   if (s.layers && s.num_states > shown_before) {
     const Status shown = s.layers->Show(&s.mesh);
     if (s.refinement.ok()) s.refinement = shown;
+    if (shown.code() == StatusCode::kInvalidData) {  // nothing of these bytes is in the mesh
+      s.num_states = shown_before;
+      s.bytes_used = bytes_of_shown;
+    }
   }
   s.pending.erase(s.pending.begin(), s.pending.begin() + static_cast<ptrdiff_t>(used));
   if (s.done()) s.pending = {};
@@ -323,7 +329,7 @@ std::vector<Triangle> ProgressiveDecoder::Corners(size_t attribute) const {
   const LevelAttribute& a = s.attributes[attribute];
   if (s.mesh.num_levels == 0) return a.base_corners;
   const size_t num_split = (a.base_corners.size() - s.num_still) << 2 * s.mesh.num_levels;
-  return WithStillTriangles(s.attribute_decoders[attribute].Corners(num_split), a.base_corners, s.mesh.tags);
+  return WithStillTriangles(s.attribute_decoders[attribute].Corners(s.mesh.num_levels, num_split), a.base_corners, s.mesh.tags);
 }
 
 std::vector<uint32_t> ProgressiveDecoder::Groups() const { return GroupsAtLevel(state_->base_groups, state_->mesh.tags, state_->mesh.num_levels); }

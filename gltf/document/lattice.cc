@@ -19,7 +19,8 @@ void Store(float value, uint64_t index, Bytes* bytes) {
 int64_t Lattice::Round(float value, uint32_t component) const {
   const auto last = static_cast<float>((int64_t{1} << bits) - 1);
   const float k = std::floor((value - origin[component]) * (last / range) + 0.5f);
-  return static_cast<int64_t>(std::clamp(k, 0.0f, last));
+  if (!(k > 0.0f)) return 0;  // NaN, too: of values that are not finite, or so far apart that the range is not
+  return static_cast<int64_t>(std::min(k, last));
 }
 
 float Lattice::At(int64_t k, uint32_t component) const {

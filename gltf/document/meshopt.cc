@@ -59,6 +59,10 @@ StatusOr<CompressedView> ParseView(const GltfDocument& document, const Json& ext
   return view;
 }
 
+// A byte of the vertex coder stands for at most 64 bytes, one of the index coders for at most 12.
+constexpr uint64_t kMostExpansion = 64;
+constexpr uint64_t kSlack = 1 << 16;
+
 // What the decoders of meshoptimizer take for granted.
 Status CheckView(const CompressedView& view) {
   const bool attributes = view.mode == "ATTRIBUTES";
@@ -69,9 +73,6 @@ Status CheckView(const CompressedView& view) {
       attributes ? view.stride >= 4 && view.stride <= 256 && view.stride % 4 == 0 : view.stride == 2 || view.stride == 4;
   if (!stride_fits) return InvalidData("byteStride " + std::to_string(view.stride) + " does not go with its mode");
   if (view.mode == "TRIANGLES" && view.count % 3 != 0) return InvalidData("count is no multiple of 3");
-  // A byte of the vertex coder stands for at most 64 bytes, one of the index coders for at most 12.
-  constexpr uint64_t kMostExpansion = 64;
-  constexpr uint64_t kSlack = 1 << 16;
   if (view.count > (kMostExpansion * view.bytes.size() + kSlack) / view.stride) {
     return InvalidData(std::to_string(view.bytes.size()) + " bytes cannot hold " + std::to_string(view.count) +
                        " elements");
@@ -98,9 +99,19 @@ Status ApplyFilter(const CompressedView& view, Bytes* decoded) {
   return Status();
 }
 
-StatusOr<Bytes> DecodeView(const GltfDocument& document, const Json& extension) {
+// What all views of a document may decode to: they do not share their bytes, or a small file would fill the memory.
+uint64_t MostDecodedBytes(const GltfDocument& document) {
+  uint64_t bytes = 0;
+  for (const Bytes& buffer : document.buffers) bytes += buffer.size();
+  return kMostExpansion * bytes + kSlack;
+}
+
+// left: bytes that may still be decoded to; lowered by those of this view.
+StatusOr<Bytes> DecodeView(const GltfDocument& document, const Json& extension, uint64_t* left) {
   LACERTA_ASSIGN_OR_RETURN(const CompressedView view, ParseView(document, extension));
   LACERTA_RETURN_IF_ERROR(CheckView(view));
+  if (view.count * view.stride > *left) return InvalidData("the compressed views decode to more than their buffers can hold: they overlap");
+  *left -= view.count * view.stride;
   const auto count = static_cast<size_t>(view.count);
   const auto stride = static_cast<size_t>(view.stride);
   Bytes decoded(count * stride);
@@ -121,17 +132,19 @@ StatusOr<Bytes> DecodeView(const GltfDocument& document, const Json& extension) 
 
 #else
 
-StatusOr<Bytes> DecodeView(const GltfDocument&, const Json&) {
+uint64_t MostDecodedBytes(const GltfDocument&) { return 0; }
+
+StatusOr<Bytes> DecodeView(const GltfDocument&, const Json&, uint64_t*) {
   return Unsupported("is compressed with meshopt, and this build has no meshoptimizer; start from the uncompressed asset");
 }
 
 #endif
 
-Status ReplaceView(uint64_t index, GltfDocument* document) {
+Status ReplaceView(uint64_t index, uint64_t* left, GltfDocument* document) {
   const char* name = nullptr;
   const Json* extension = ExtensionOf(*FindElement(document->json, "bufferViews", index), &name);
   if (extension == nullptr) return Status();
-  LACERTA_ASSIGN_OR_RETURN(Bytes decoded, DecodeView(*document, *extension));
+  LACERTA_ASSIGN_OR_RETURN(Bytes decoded, DecodeView(*document, *extension, left));
   const uint64_t length = decoded.size();
   const uint64_t buffer = AddBuffer(std::move(decoded), document);
   Json& view = document->json["bufferViews"][static_cast<size_t>(index)];
@@ -145,8 +158,9 @@ Status ReplaceView(uint64_t index, GltfDocument* document) {
 }  // namespace
 
 Status DecodeMeshoptViews(GltfDocument* document) {
+  uint64_t left = MostDecodedBytes(*document);
   for (uint64_t i = 0; i < ArraySize(document->json, "bufferViews"); ++i) {
-    const Status status = ReplaceView(i, document);
+    const Status status = ReplaceView(i, &left, document);
     if (!status.ok()) return status.WithContext("bufferView " + std::to_string(i));
   }
   for (uint64_t i = 0; i < ArraySize(document->json, "buffers"); ++i) {

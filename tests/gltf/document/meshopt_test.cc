@@ -106,6 +106,18 @@ TEST(Meshopt, RefusesWhatItsStreamCannotHold) {
   EXPECT_THAT(message(1, "byteStride", 12), HasSubstr("byteStride"));
 }
 
+// A small file of many views of the same bytes would fill the memory.
+TEST(Meshopt, RefusesViewsThatShareTheirBytes) {
+  const auto message = [](size_t num_views) {
+    GltfDocument document = Compressed(testing::WavySphere(32, 48), "EXT_meshopt_compression");
+    const Json view = document.json["bufferViews"][0];
+    while (document.json["bufferViews"].size() < num_views) document.json["bufferViews"].push_back(view);
+    return DecodeMeshoptViews(&document).message();
+  };
+  EXPECT_EQ(message(5), "");  // sharing as such is harmless
+  EXPECT_THAT(message(500), HasSubstr("overlap"));
+}
+
 #else
 
 TEST(Meshopt, IsRefusedByName) {

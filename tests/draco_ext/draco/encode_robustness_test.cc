@@ -1,0 +1,144 @@
+// Meshes that no scanner makes: EncodeMesh refuses them by name or makes a stream that decodes to a sound mesh, and where and how large a
+// mesh is says little to its bytes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lacerta/codec.h"
+#include "lacerta/surface_distance.h"
+#include "shapes/base_meshes.h"
+#include "shapes/shapes.h"
+
+namespace lacerta {
+namespace {
+
+using ::testing::HasSubstr;
+using Kind = EncodeTarget::Kind;
+
+// No subdivision connectivity, so that it is remeshed.
+TriangleMesh Bumpy() { return shapes::WithEdgeFlipped(shapes::BumpySphere(3, 0.2f, 0.002f), 300); }
+
+TriangleMesh Moved(TriangleMesh mesh, float scale, const Vec3f& offset) {
+  for (Vec3f& p : mesh.positions) p = p * scale + offset;
+  return mesh;
+}
+
+EncodeOptions Options(LevelChoice levels) {
+  EncodeOptions options;
+  options.target = {Kind::kPsnr, 48.0};
+  options.levels = levels;
+  options.effort = Effort::kFast;
+  return options;
+}
+
+// The message of a refusal, or nothing; a stream is sound.
+std::string Encode(const TriangleMesh& mesh, LevelChoice levels) {
+  const StatusOr<EncodedMesh> encoded = EncodeMesh(mesh, Options(levels));
+  if (!encoded.ok()) {
+    EXPECT_NE(encoded.status().message(), "");
+    return encoded.status().message();
+  }
+  const std::vector<size_t>& parts = encoded.value().part_sizes;
+  EXPECT_EQ(std::accumulate(parts.begin(), parts.end(), size_t{0}), encoded.value().stream.size());
+  const StatusOr<DecodedMesh> decoded = DecodeMesh(encoded.value().stream, {});
+  EXPECT_TRUE(decoded.ok()) << decoded.status().message();
+  if (!decoded.ok()) return "";
+  EXPECT_TRUE(decoded.value().refinement.ok()) << decoded.value().refinement.message();
+  const TriangleMesh& result = decoded.value().mesh;
+  EXPECT_FALSE(result.triangles.empty());
+  for (const Vec3f& p : result.positions) EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+  for (const Triangle& t : result.triangles) EXPECT_LT(*std::max_element(t.begin(), t.end()), result.positions.size());
+  return "";
+}
+
+class ScaleTest : public ::testing::TestWithParam<float> {};
+
+TEST_P(ScaleTest, IsEncodedOrRefusedByName) {
+  const float scale = GetParam();
+  const bool is_large = scale > 1e18f, is_small = scale < 1e-13f;
+  for (const LevelChoice levels : {LevelChoice::kAlways, LevelChoice::kNever}) {
+    const std::string message = Encode(Moved(Bumpy(), scale, {}), levels);
+    if (is_large) {
+      EXPECT_THAT(message, HasSubstr("beyond 1e18"));
+    } else if (is_small) {
+      EXPECT_THAT(message, HasSubstr("smaller than 1e-12"));
+    } else {
+      EXPECT_EQ(message, "");
+    }
+  }
+}
+
+// Denormal numbers, the least and the largest that are taken, and what is beyond.
+INSTANTIATE_TEST_SUITE_P(Scales, ScaleTest, ::testing::Values(1e-40f, 1e-30f, 1e-14f, 1e-11f, 1e17f, 1e19f, 1e30f, 2e38f));
+
+TEST(EncodeRobustnessTest, SurfacesWithoutAreaAreRefused) {
+  TriangleMesh point = Bumpy(), line = point;
+  std::fill(point.positions.begin(), point.positions.end(), Vec3f{1, 2, 3});
+  for (Vec3f& p : line.positions) p.y = p.z = 0;
+  for (const LevelChoice levels : {LevelChoice::kAlways, LevelChoice::kWhereTheyPay}) {
+    EXPECT_THAT(Encode(point, levels), HasSubstr("no triangle left"));
+    EXPECT_THAT(Encode(line, levels), HasSubstr("degenerate"));
+    EXPECT_THAT(Encode({}, levels), HasSubstr("no triangle"));
+  }
+}
+
+TEST(EncodeRobustnessTest, OneTriangleIsEncoded) {
+  const TriangleMesh one = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  for (const LevelChoice levels : {LevelChoice::kAlways, LevelChoice::kWhereTheyPay, LevelChoice::kNever}) EXPECT_EQ(Encode(one, levels), "");
+}
+
+TEST(EncodeRobustnessTest, ManyTinyComponentsAreEncoded) {
+  std::mt19937 random(3);
+  const auto coordinate = [&] { return static_cast<float>(random() % 10001) / 5000 - 1; };
+  TriangleMesh mesh;
+  for (uint32_t i = 0; i < 400; ++i) {
+    const Vec3f corner = {coordinate(), coordinate(), coordinate()};
+    mesh.positions.insert(mesh.positions.end(), {corner, corner + Vec3f{0.02f, 0, 0}, corner + Vec3f{0, 0.02f, 0}, corner + Vec3f{0, 0, 0.02f}});
+    const uint32_t a = 4 * i;
+    mesh.triangles.insert(mesh.triangles.end(), {{a, a + 2, a + 1}, {a, a + 1, a + 3}, {a, a + 3, a + 2}, {a + 1, a + 2, a + 3}});
+  }
+  EXPECT_EQ(Encode(mesh, LevelChoice::kAlways), "");
+}
+
+// Edges of many faces, faces through each other, vertices of no face.
+TEST(EncodeRobustnessTest, RandomTrianglesAreEncoded) {
+  for (const uint32_t num_vertices : {8u, 120u}) {
+    std::mt19937 random(num_vertices);
+    const auto coordinate = [&] { return static_cast<float>(random() % 10001) / 5000 - 1; };
+    TriangleMesh mesh;
+    for (uint32_t v = 0; v < num_vertices; ++v) mesh.positions.push_back({coordinate(), coordinate(), coordinate()});
+    for (uint32_t f = 0; f < 150; ++f) {
+      mesh.triangles.push_back({static_cast<uint32_t>(random() % num_vertices), static_cast<uint32_t>(random() % num_vertices),
+                                static_cast<uint32_t>(random() % num_vertices)});
+    }
+    for (const LevelChoice levels : {LevelChoice::kAlways, LevelChoice::kNever}) EXPECT_EQ(Encode(mesh, levels), "");
+  }
+}
+
+// Coordinates of a far corner round differently, and lattices fit differently; otherwise bytes are a matter of shape.
+TEST(EncodeRobustnessTest, PlaceSizeAndOrderHardlyChangeTheBytes) {
+  const TriangleMesh mesh = Bumpy();
+  TriangleMesh turned = mesh, reordered = mesh;
+  for (Vec3f& p : turned.positions) p = {0.8f * p.x - 0.6f * p.y, 0.6f * p.x + 0.8f * p.y, p.z};
+  std::reverse(reordered.triangles.begin(), reordered.triangles.end());
+  const auto encode = [](const TriangleMesh& input) { return EncodeMesh(input, Options(LevelChoice::kAlways)).value(); };
+  const EncodedMesh plain = encode(mesh);
+  ASSERT_TRUE(plain.report.progressive);
+  const auto bytes = static_cast<double>(plain.stream.size());
+  for (const TriangleMesh& other : {Moved(mesh, 1000.0f, {}), Moved(mesh, 1e-6f, {}), Moved(mesh, 1.0f, {3, -2, 1}), turned, reordered}) {
+    const EncodedMesh encoded = encode(other);
+    EXPECT_NEAR(static_cast<double>(encoded.stream.size()), bytes, 0.15 * bytes);
+    EXPECT_NEAR(encoded.report.levels.back().psnr, plain.report.levels.back().psnr, 0.3);  // both within 0.3 dB over the target
+  }
+}
+
+}  // namespace
+}  // namespace lacerta

@@ -1,0 +1,64 @@
+// Any bytes as an asset before packing: every reader that the packer has for accessors (sparse, quantized, compressed with meshopt or
+// Draco), morph targets, groups and scenes, what measures and rounds attributes and, of assets of a few triangles, the whole packer.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "fuzz/fuzz_input.h"
+#include "lacerta/gltf.h"
+#include "pack/source.h"
+
+namespace {
+
+using lacerta::Attribute;
+
+// Returns the number of triangles.
+size_t CheckSource(const lacerta::Source& source) {
+  FUZZ_CHECK(!source.places.empty() && source.geometries.size() <= source.places.size());
+  if (!source.primitive.has_value()) {
+    FUZZ_CHECK(!source.reason.empty());
+    return 0;
+  }
+  const lacerta::Primitive& primitive = *source.primitive;
+  for (const lacerta::Triangle& triangle : primitive.triangles) {
+    for (const uint32_t index : triangle) FUZZ_CHECK(index < primitive.num_vertices);
+  }
+  const auto check = [&](const Attribute& attribute) {
+    FUZZ_CHECK(attribute.data.count == primitive.num_vertices);
+    FUZZ_CHECK(attribute.data.bytes.size() == attribute.data.count * attribute.data.components * ComponentSize(attribute.data.type));
+  };
+  for (const Attribute& attribute : primitive.attributes) check(attribute);
+  for (const lacerta::MorphTarget& target : source.targets) {
+    for (const Attribute& attribute : target) check(attribute);
+  }
+  for (const lacerta::Vec3f& p : Surface(primitive).positions) {
+    FUZZ_CHECK(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+  }
+  return primitive.triangles.size();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  const lacerta::Span<const uint8_t> asset(data, size);
+  lacerta::PackOptions options;
+  options.folder = "/nonexistent";  // external buffers are not for this test
+  const auto document = lacerta::ParseGltf(asset, options.folder);
+  if (!document.ok()) {
+    FUZZ_CHECK(!document.status().message().empty());
+    return 0;
+  }
+  const auto sources = ReadSources(document.value());
+  if (!sources.ok()) return 0;
+  size_t num_triangles = 0;
+  for (const lacerta::Source& source : sources.value()) num_triangles += CheckSource(source);
+  constexpr size_t kMostTriangles = 32;
+  if (num_triangles > kMostTriangles) return 0;
+  options.encode.effort = lacerta::Effort::kFast;
+  const auto packed = PackGltf(asset, options);
+  FUZZ_CHECK(packed.ok() || !packed.status().message().empty());
+  if (!packed.ok()) return 0;
+  const auto unpacked = lacerta::UnpackGltf(packed.value().glb, {});
+  FUZZ_CHECK(unpacked.ok());
+  return 0;
+}
