@@ -43,8 +43,8 @@ Lattice FitLattice(const AccessorData& data, int bits) {
 
 Lattice LatticeOfStep(const Lattice& box, float step) {
   Lattice lattice = box;
-  const double steps = std::max(static_cast<double>(box.range) / static_cast<double>(step), 1.0);
-  lattice.bits = std::clamp(static_cast<int>(std::ceil(std::log2(steps + 1.0))), 1, kMostLatticeBits);
+  const double steps = std::max(1.0, static_cast<double>(box.range) / static_cast<double>(step));  // 1 where that is NaN
+  lattice.bits = static_cast<int>(std::clamp(std::ceil(std::log2(steps + 1.0)), 1.0, static_cast<double>(kMostLatticeBits)));
   const double last = static_cast<double>((int64_t{1} << lattice.bits) - 1);
   lattice.range = std::max(static_cast<float>(last * static_cast<double>(step)), box.range);
   return lattice;
