@@ -97,9 +97,7 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
       if (!surface.ok()) return surface.status().WithContext(PlaceName(document, places[0]));
       if (!surface.value().note.empty())
         result.notes.push_back(PlaceName(document, places[0]) + ": " + surface.value().note);
-      Primitive shown = ToPrimitive(surface.value());
-      RestoreUnits(&shown);
-      ReplaceGeometry({places[0]}, places, PlainGeometry(shown, &document), &pool, &document);
+      ReplaceGeometry({places[0]}, places, PlainGeometry(ToPrimitive(surface.value()), &document), &pool, &document);
     } else if (PrimitiveExtension(primitive, kDracoName) != nullptr) {
       StatusOr<Primitive> decoded = ReadPrimitive(document, primitive, options.limits);
       if (!decoded.ok()) return decoded.status().WithContext(PlaceName(document, places[0]));

@@ -154,6 +154,7 @@ TEST(TinyGltf, EveryLevelIsWhatUnpackingGives) {
         EXPECT_EQ(got.attributes.size(), m < 2 ? 2u : 1u);  // smooth normals, or none
         ASSERT_EQ(got.attributes.size(), wanted.attributes.size());
         for (const auto& [name, accessor] : got.attributes) {
+          SCOPED_TRACE(name + " of mesh " + std::to_string(m) + ", level " + std::to_string(level));
           ExpectSameAccessor(model, accessor, unpacked, wanted.attributes.at(name));
         }
         ExpectSameAccessor(model, got.indices, unpacked, wanted.indices);

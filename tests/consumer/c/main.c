@@ -6,7 +6,7 @@
 int main(void) {
   lacerta_decoder* decoder = NULL;
   lacerta_progress progress = LACERTA_PROGRESS_INIT;
-  char message[64];
+  char message[256];
   if (lacerta_version() >> 16 != LACERTA_VERSION_MAJOR) return 1;
   if (lacerta_decode_prefix("no stream", 9, NULL, &decoder) != LACERTA_INVALID_DATA || decoder != NULL) return 2;
   if (lacerta_decoder_create(NULL, &decoder) != LACERTA_OK) return 3;

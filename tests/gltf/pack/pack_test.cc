@@ -55,7 +55,7 @@ TEST(Pack, DracoFallbackSharesTheBytesOfTheBase) {
   EXPECT_THAT(Strings(json, "extensionsUsed"), AllOf(Contains(kDracoName), Contains(kProgressiveName)));
   EXPECT_THAT(Strings(json, "extensionsRequired"), AllOf(Contains(kDracoName), Not(Contains(kProgressiveName))));
   const Progressive progressive = ParseProgressive(document).value();
-  ASSERT_EQ(progressive.streams.size(), 2u);
+  ASSERT_EQ(progressive.streams.size(), 3u);  // the last one of two primitives
   EXPECT_FALSE(progressive.streams[0].smooth_normals);
   EXPECT_TRUE(progressive.streams[1].smooth_normals);
   const Span<const uint8_t> data = BufferViewBytes(document, progressive.data).value();
@@ -106,8 +106,8 @@ TEST(Pack, ReportsEveryPrimitive) {
   EXPECT_EQ(report[0].storage, PrimitiveStorage::kProgressive);
   EXPECT_EQ(report[1].storage, PrimitiveStorage::kProgressive);
   EXPECT_EQ(report[1].name, "smooth");
-  EXPECT_EQ(report[2].storage, PrimitiveStorage::kDraco);
-  EXPECT_THAT(report[2].reason, HasSubstr("2 primitives"));
+  EXPECT_EQ(report[2].storage, PrimitiveStorage::kProgressive);
+  EXPECT_THAT(report[2].reason, HasSubstr("in 3 levels"));
   EXPECT_EQ(report[3].primitive, 1u);
   for (const PrimitiveReport& primitive : report) EXPECT_LT(primitive.bytes_after, primitive.bytes_before);
 }
