@@ -1,8 +1,7 @@
 #include "common/attribute_prediction.h"
 
-#include <cmath>
-
 #include "common/coefficient_sets.h"
+#include "common/local_frame.h"
 
 namespace lacerta {
 namespace {
@@ -13,8 +12,6 @@ void SetVector(const Vec3f& v, float* row) {
   for (int c = 0; c < 3; ++c) row[c] = v[c];
 }
 
-bool IsDirection(AttributeKind kind) { return kind == AttributeKind::kNormal || kind == AttributeKind::kTangent; }
-
 // Of unit length; the direction before where there is none.
 Vec3f UnitOr(const Vec3f& v, const Vec3f& otherwise) {
   const Vec3f unit = Normalized(v);
@@ -24,19 +21,16 @@ Vec3f UnitOr(const Vec3f& v, const Vec3f& otherwise) {
 // Area vectors of the decoded triangles of the finer level that meet at the midpoint of a wedge edge, added up: those on its side of
 // the attribute's seams alone.
 Vec3f AreaAround(const AttributeWedges& wedges, const SurfaceLevel& surface, uint32_t edge) {
-  const Topology& s = surface.coarse;
+  const uint32_t num_coarse = surface.coarse.num_vertices;
+  const Span<const Vec3f> positions(surface.positions), midpoints(positions.data() + num_coarse, positions.size() - num_coarse);
   Vec3f sum;
   for (const uint32_t f : wedges.topology.edge_faces[edge]) {
     if (f == kNone) continue;
-    const uint32_t face = wedges.SurfaceFace(f);
+    const SplitFace split(surface.coarse, positions, midpoints, wedges.SurfaceFace(f));
     const int k = EdgeCorner(wedges.topology, f, edge);
-    const Vec3f* const midpoints = surface.positions.data() + s.num_vertices;
-    const Vec3f m[3] = {midpoints[s.face_edges[face][0]], midpoints[s.face_edges[face][1]], midpoints[s.face_edges[face][2]]};
-    sum += Cross(m[1] - m[0], m[2] - m[0]);
-    for (const int corner : {(k + 1) % 3, (k + 2) % 3}) {
-      const Vec3f& v = surface.positions[s.triangles[face][corner]];
-      sum += Cross(m[(corner + 2) % 3] - v, m[(corner + 1) % 3] - v);
-    }
+    sum += split.InMiddle();
+    sum += split.AtCorner((k + 1) % 3);
+    sum += split.AtCorner((k + 2) % 3);
   }
   return sum;
 }
@@ -72,13 +66,8 @@ std::array<Vec3f, 2> NormalAxes(const AttributeWedges& wedges, const SurfaceLeve
   const int k = EdgeCorner(wedges.topology, f, edge);
   const Triangle& face = surface.coarse.triangles[wedges.SurfaceFace(f)];
   const Vec3f along = Normalized(surface.positions[face[(k + 2) % 3]] - surface.positions[face[(k + 1) % 3]]);
-  Vec3f tangent = along - normal * Dot(along, normal);
-  if (!(SquaredNorm(tangent) > 1e-6f)) {
-    const float x = std::fabs(normal.x), y = std::fabs(normal.y), z = std::fabs(normal.z);
-    const Vec3f axis = x <= y && x <= z ? Vec3f{1, 0, 0} : y <= z ? Vec3f{0, 1, 0} : Vec3f{0, 0, 1};
-    tangent = axis - normal * Dot(axis, normal);
-  }
-  tangent = Normalized(tangent);
+  const Vec3f across = along - normal * Dot(along, normal);
+  const Vec3f tangent = SquaredNorm(across) > 1e-6f ? Normalized(across) : AnyOrthogonal(normal);
   return {tangent, Cross(normal, tangent)};
 }
 

@@ -1,31 +1,9 @@
 #include "common/local_frame.h"
 
-#include <array>
 #include <cmath>
 
 namespace lacerta {
 namespace {
-
-// Any unit vector orthogonal to the unit vector n: the axis least aligned with it, made orthogonal.
-Vec3f AnyOrthogonal(const Vec3f& n) {
-  const float x = std::fabs(n.x), y = std::fabs(n.y), z = std::fabs(n.z);
-  const Vec3f axis = x <= y && x <= z ? Vec3f{1, 0, 0} : y <= z ? Vec3f{0, 1, 0} : Vec3f{0, 0, 1};
-  return Normalized(axis - n * Dot(axis, n));
-}
-
-// The four fine triangles of a face, as area vectors.
-struct SplitFace {
-  SplitFace(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints, uint32_t face) {
-    for (int k = 0; k < 3; ++k) {
-      corners[k] = positions[coarse.triangles[face][k]];
-      middle[k] = midpoints[coarse.face_edges[face][k]];
-    }
-  }
-  Vec3f AtCorner(int k) const { return Cross(middle[(k + 2) % 3] - corners[k], middle[(k + 1) % 3] - corners[k]); }
-  Vec3f InMiddle() const { return Cross(middle[1] - middle[0], middle[2] - middle[0]); }
-
-  std::array<Vec3f, 3> corners, middle;
-};
 
 // normal: not yet normalized.
 LocalFrame FrameAround(const Topology& coarse, Span<const Vec3f> positions, uint32_t edge, const Vec3f& normal) {
@@ -42,6 +20,12 @@ LocalFrame FrameAround(const Topology& coarse, Span<const Vec3f> positions, uint
 }
 
 }  // namespace
+
+Vec3f AnyOrthogonal(const Vec3f& n) {
+  const float x = std::fabs(n.x), y = std::fabs(n.y), z = std::fabs(n.z);
+  const Vec3f axis = x <= y && x <= z ? Vec3f{1, 0, 0} : y <= z ? Vec3f{0, 1, 0} : Vec3f{0, 0, 1};
+  return Normalized(axis - n * Dot(axis, n));
+}
 
 LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints,
                         uint32_t edge) {

@@ -2,6 +2,7 @@
 #ifndef LACERTA_COMMON_LOCAL_FRAME_H_
 #define LACERTA_COMMON_LOCAL_FRAME_H_
 
+#include <array>
 #include <vector>
 
 #include "common/subdivision.h"
@@ -15,6 +16,23 @@ struct LocalFrame {
 
   Vec3f ToLocal(const Vec3f& d) const { return {Dot(d, tangent1), Dot(d, tangent2), Dot(d, normal)}; }
   Vec3f ToWorld(const Vec3f& d) const { return tangent1 * d.x + tangent2 * d.y + normal * d.z; }
+};
+
+// Any unit vector orthogonal to the unit vector n: the axis least aligned with it, made orthogonal.
+Vec3f AnyOrthogonal(const Vec3f& n);
+
+// The four fine triangles of a face of `coarse`, as area vectors.
+struct SplitFace {
+  SplitFace(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints, uint32_t face) {
+    for (int k = 0; k < 3; ++k) {
+      corners[k] = positions[coarse.triangles[face][k]];
+      middle[k] = midpoints[coarse.face_edges[face][k]];
+    }
+  }
+  Vec3f AtCorner(int k) const { return Cross(middle[(k + 2) % 3] - corners[k], middle[(k + 1) % 3] - corners[k]); }
+  Vec3f InMiddle() const { return Cross(middle[1] - middle[0], middle[2] - middle[0]); }
+
+  std::array<Vec3f, 3> corners, middle;
 };
 
 // Frame of the midpoint of one edge of `coarse`.

@@ -6,7 +6,6 @@
 #include <draco/mesh/mesh.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -33,16 +32,6 @@ struct MarkedLattice {
 
   float MarkRange() const { return static_cast<float>((1 << bits) - 1); }
 };
-
-// The range for which range / (2^bits - 1) is `step` in float.
-float RangeForStep(float step, int bits) {
-  const auto divisor = static_cast<float>((1 << bits) - 1);
-  const float range = step * divisor;
-  for (const float candidate : {range, std::nextafter(range, 0.0f), std::nextafter(range, std::numeric_limits<float>::infinity())}) {
-    if (candidate / divisor == step) return candidate;
-  }
-  return range;
-}
 
 Status WriteGrid(const MarkedLattice& lattice, Bytes* stream) {
   std::vector<float> mark = lattice.mark, grid = lattice.origin;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -62,17 +61,6 @@ StatusOr<IntegerMesh> ToIntegerMesh(const BaseMesh& base) {
   }
   result.mesh.triangles = base.triangles;
   return result;
-}
-
-// The decoder's step is range / (2^bits - 1), rounded to float: the range that makes it `step` exactly.
-float RangeForStep(float step, int bits) {
-  const auto divisor = static_cast<float>((1 << bits) - 1);
-  const float range = step * divisor;
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  for (const float candidate : {range, std::nextafter(range, 0.0f), std::nextafter(range, kInfinity)}) {
-    if (candidate / divisor == step) return candidate;
-  }
-  return range;
 }
 
 // The input vertex behind each vertex of `coded`, the decoded triangles of the stream. Draco does not tell, so the same

@@ -1,9 +1,7 @@
 #include "draco/normal_mesh_candidate.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
-#include <map>
 #include <utility>
 
 #include "common/base_tags.h"
@@ -16,6 +14,7 @@
 #include "encoder/vertex_repair.h"
 #include "lacerta/surface_distance.h"
 #include "remesh/base_domain.h"
+#include "remesh/base_parts.h"
 #include "remesh/piercing.h"
 #include "remesh/reversal.h"
 #include "remesh/surface_fit.h"
@@ -25,25 +24,7 @@ namespace {
 
 // Of a base that is made finer where the remesh is reversed: a surface that needs more is better served by the next size.
 constexpr double kLargestGrowth = 1.25;
-constexpr size_t kTriedSilentLevels = 1;
 constexpr double kFreeVertices = 8;  // that any base may have more
-
-TriangleMesh Together(TriangleMesh a, const TriangleMesh& b) {
-  const auto offset = static_cast<uint32_t>(a.positions.size());
-  a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
-  for (const Triangle& t : b.triangles) a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-  return a;
-}
-
-// For each base vertex the first one at the same position, where the surface was cut; empty where it nowhere was.
-std::vector<uint32_t> JoinedVertices(const std::vector<Vec3f>& positions) {
-  std::map<std::array<float, 3>, uint32_t> first;
-  std::vector<uint32_t> joined;
-  for (const Vec3f& p : positions) {
-    joined.push_back(first.emplace(std::array<float, 3>{p.x, p.y, p.z}, static_cast<uint32_t>(joined.size())).first->second);
-  }
-  return JoinsAnything(joined) ? joined : std::vector<uint32_t>();
-}
 
 // A base mesh at a cut of the history, the normal mesh over it, and what of that is reversed.
 struct Remeshed {
@@ -129,8 +110,11 @@ StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope
   options.lambda = slope.lambda;
   options.passes = slope.passes;
   std::vector<LevelSteps> steps = StepsForSlope(target_, slope.last_detailed, slope.step_lambda);
-  // Levels far beyond the last detailed one hardly ever keep a coefficient: not looking at them takes a fraction of the time.
-  for (size_t i = static_cast<size_t>(slope.last_detailed) + kTriedSilentLevels; i < steps.size() && !target_.keeps_vertices; ++i) steps[i] = LevelSteps();
+  if (!target_.keeps_vertices) {
+    // Levels far beyond the last detailed one hardly ever keep a coefficient: not looking at them takes a fraction of the time.
+    constexpr size_t kTriedSilentLevels = 1;
+    for (size_t i = static_cast<size_t>(slope.last_detailed) + kTriedSilentLevels; i < steps.size(); ++i) steps[i] = LevelSteps();
+  }
   CodedSurface coded = Descend(target_, QuantizeClosedLoop(target_, lattice, steps), options);
   if (target_.keeps_vertices) RepairVertices(target_, &coded);
   return coded;

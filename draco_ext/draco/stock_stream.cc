@@ -12,7 +12,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -104,6 +106,15 @@ StatusOr<Bytes> EncodeIntegerPositions(const draco::Mesh& mesh, int bits, const 
   draco::EncoderBuffer buffer;
   if (const draco::Status status = encoder.EncodeToBuffer(&buffer); !status.ok()) return FromDracoStatus(status);
   return Bytes(buffer.data(), buffer.data() + buffer.size());
+}
+
+float RangeForStep(float step, int bits) {
+  const auto divisor = static_cast<float>((1 << bits) - 1);
+  const float range = step * divisor;
+  for (const float candidate : {range, std::nextafter(range, 0.0f), std::nextafter(range, std::numeric_limits<float>::infinity())}) {
+    if (candidate / divisor == step) return candidate;
+  }
+  return range;
 }
 
 Status SetQuantizationGrid(const QuantizationGrid& grid, Bytes* stream) {

@@ -41,6 +41,9 @@ struct QuantizationGrid {
   float range = 1.0f;  // model units, > 0
 };
 
+// The range for which range / (2^bits - 1) is `step` exactly in float, 1 <= bits <= 24; the nearest one where there is none.
+float RangeForStep(float step, int bits);
+
 // Writes the grid over the one of `stream`, a result of EncodeIntegerPositions on a mesh with no other attribute.
 // Draco's options cannot carry it: they store floats as decimal text with six digits after the point.
 Status SetQuantizationGrid(const QuantizationGrid& grid, Bytes* stream);

@@ -104,7 +104,7 @@ CodedAttribute QuantizeAttribute(const AttributeTarget& target, const AttributeH
 
 double AttributeRmsError(const AttributeTarget& target, const std::vector<float>& decoded) {
   const uint32_t n = target.precision.components;
-  const bool is_direction = target.precision.kind == AttributeKind::kNormal || target.precision.kind == AttributeKind::kTangent;
+  const bool is_direction = IsDirection(target.precision.kind);
   double sum = 0;
   for (size_t row = 0; row < target.weights.size(); ++row) {
     if (target.weights[row] == 0) continue;

@@ -40,7 +40,7 @@ double DegreesBetween(const Vec3d& a, const Vec3d& b) {
 
 // In the units of AttributeError.
 double ErrorBetween(const MeshAttribute& attribute, double texture_size, const double* a, const double* b) {
-  const bool is_direction = attribute.kind == AttributeKind::kNormal || attribute.kind == AttributeKind::kTangent;
+  const bool is_direction = IsDirection(attribute.kind);
   if (is_direction && attribute.components >= 3) {
     if (attribute.components > 3 && (a[3] < 0) != (b[3] < 0)) return 180;
     return DegreesBetween({a[0], a[1], a[2]}, {b[0], b[1], b[2]});

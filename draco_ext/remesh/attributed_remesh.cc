@@ -1,15 +1,13 @@
 #include "remesh/attributed_remesh.h"
 
 #include <algorithm>
-#include <array>
-#include <map>
 #include <string>
 #include <utility>
 
-#include "common/base_tags.h"
 #include "geometry/bounding_box.h"
 #include "geometry/group_surface.h"
 #include "remesh/attribute_fit.h"
+#include "remesh/base_parts.h"
 #include "remesh/decimate.h"
 #include "remesh/level_attributes.h"
 #include "remesh/piercing.h"
@@ -19,23 +17,6 @@ namespace lacerta {
 namespace {
 
 constexpr size_t kFewestFacesPerBaseFace = 8;
-
-// For each base vertex the first one at the same position, where the surface was cut; empty where it nowhere was.
-std::vector<uint32_t> JoinedVertices(const std::vector<Vec3f>& positions) {
-  std::map<std::array<float, 3>, uint32_t> first;
-  std::vector<uint32_t> joined;
-  for (const Vec3f& p : positions) {
-    joined.push_back(first.emplace(std::array<float, 3>{p.x, p.y, p.z}, static_cast<uint32_t>(joined.size())).first->second);
-  }
-  return JoinsAnything(joined) ? joined : std::vector<uint32_t>();
-}
-
-TriangleMesh Together(TriangleMesh a, const TriangleMesh& b) {
-  const auto offset = static_cast<uint32_t>(a.positions.size());
-  a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
-  for (const Triangle& t : b.triangles) a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-  return a;
-}
 
 BaseOrder Unchanged(const TriangleMesh& base) {
   BaseOrder order;

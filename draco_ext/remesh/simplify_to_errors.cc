@@ -34,7 +34,7 @@ double RangeOf(const MeshAttribute& attribute) {
 // One unit of AttributeError in units of the attribute.
 double ErrorUnit(const MeshAttribute& attribute, double texture_size) {
   if (attribute.kind == AttributeKind::kTextureCoordinates) return 1 / texture_size;
-  const bool is_direction = attribute.kind == AttributeKind::kNormal || attribute.kind == AttributeKind::kTangent;
+  const bool is_direction = IsDirection(attribute.kind);
   return is_direction && attribute.components >= 3 ? kRadiansPerDegree : 1;
 }
 

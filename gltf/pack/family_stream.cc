@@ -126,7 +126,7 @@ StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const Surfac
       if (attribute.in_group[g] == 0) continue;
       group.ids.push_back({attribute.precision.name, static_cast<uint32_t>(a + 1)});
       const AttributeKind kind = attribute.precision.kind;
-      const bool direction = kind == AttributeKind::kNormal || kind == AttributeKind::kTangent;
+      const bool direction = IsDirection(kind);
       const bool texture = kind == AttributeKind::kTextureCoordinates;
       reports.push_back({attribute.precision.name, 0, family.Reported(trial.errors, a), direction ? "degrees" : texture ? "texels" : ""});
     }

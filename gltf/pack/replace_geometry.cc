@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "decoder/smooth_normals.h"
 #include "document/buffer_edit.h"
-#include "document/normals.h"
 #include "extension/progressive.h"
 
 namespace lacerta {
@@ -13,7 +13,7 @@ NewGeometry PlainGeometry(const TriangleMesh& mesh, bool with_normals, GltfDocum
   geometry.attributes.push_back(
       {"POSITION", MakeAccessor(MakeFloatAccessor(mesh.positions), AccessorUse::kAttribute, true, document)});
   if (with_normals) {
-    const AccessorData normals = MakeFloatAccessor(DeriveNormals(mesh));
+    const AccessorData normals = MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles));
     geometry.attributes.push_back({"NORMAL", MakeAccessor(normals, AccessorUse::kAttribute, false, document)});
   }
   geometry.indices =

@@ -230,7 +230,7 @@ class FamilyRounder {
     family->error = errors.distance;
     for (const MeshAttribute& attribute : meter_.original().attributes) {
       const size_t a = family->everywhere.size();
-      const bool direction = attribute.kind == AttributeKind::kNormal || attribute.kind == AttributeKind::kTangent;
+      const bool direction = IsDirection(attribute.kind);
       family->everywhere.push_back(direction ? std::max(errors.attributes[a].rms, targets_.attributes[a]) : kInfinity);
     }
     for (size_t a = 0; a < attributes_.size(); ++a) {

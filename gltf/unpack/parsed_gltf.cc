@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "decoder/smooth_normals.h"
 #include "document/accessor.h"
 #include "document/gltf_document.h"
-#include "document/normals.h"
 #include "document/place.h"
 #include "extension/progressive.h"
 #include "unpack/surface_reader.h"
@@ -26,7 +26,7 @@ RefinedGeometry ToArrays(ProgressiveSurface surface) {
   geometry.min = bounds.min;
   geometry.max = bounds.max;
   geometry.positions = MakeFloatAccessor(mesh.positions).bytes;
-  if (surface.smooth_normals) geometry.normals = MakeFloatAccessor(DeriveNormals(mesh)).bytes;
+  if (surface.smooth_normals) geometry.normals = MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles)).bytes;
   for (VertexSoup::Attribute& attribute : surface.attributes) {
     AccessorData values = MakeFloatAccessor(attribute.values, attribute.components);
     if (attribute.name == "NORMAL" && attribute.components == 3) {

@@ -5,10 +5,10 @@
 #include <cstring>
 #include <utility>
 
+#include "decoder/smooth_normals.h"
 #include "document/accessor.h"
 #include "document/buffer_edit.h"
 #include "document/draco_primitive.h"
-#include "document/normals.h"
 
 namespace lacerta {
 namespace {
@@ -193,7 +193,7 @@ StatusOr<ProgressiveSurface> ReadSurface(const GltfDocument& document, const Sta
 Primitive ToPrimitive(const ProgressiveSurface& surface) {
   const TriangleMesh& mesh = surface.surface;
   Primitive primitive{mesh.positions.size(), mesh.triangles, {{"POSITION", MakeFloatAccessor(mesh.positions)}}};
-  if (surface.smooth_normals) primitive.attributes.push_back({"NORMAL", MakeFloatAccessor(DeriveNormals(mesh))});
+  if (surface.smooth_normals) primitive.attributes.push_back({"NORMAL", MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles))});
   for (const VertexSoup::Attribute& attribute : surface.attributes) {
     primitive.attributes.push_back({attribute.name, MakeFloatAccessor(attribute.values, attribute.components)});
   }

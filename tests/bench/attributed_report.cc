@@ -35,7 +35,7 @@ Status Report(const NamedSurface& surface, const Targets& wanted) {
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(mesh));
   ErrorTargets targets = TargetsFor(mesh, DistanceOfPsnr(wanted.psnr, meter.diagonal()), wanted.texels, wanted.degrees);
   for (const MeshAttribute& attribute : mesh.attributes) {
-    const bool is_direction = attribute.kind == AttributeKind::kNormal || attribute.kind == AttributeKind::kTangent;
+    const bool is_direction = IsDirection(attribute.kind);
     targets.everywhere.push_back(is_direction ? wanted.all_degrees : std::numeric_limits<double>::infinity());
   }
   targets.turned = wanted.turned;

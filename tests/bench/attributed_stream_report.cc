@@ -30,7 +30,7 @@ AttributedStreamOptions OptionsFor(const AttributedNormalMesh& mesh, const Wante
   AttributedStreamOptions options;
   options.lambda = lambda;
   for (const LevelAttribute& a : mesh.attributes) {
-    const bool is_direction = a.kind == AttributeKind::kNormal || a.kind == AttributeKind::kTangent;
+    const bool is_direction = IsDirection(a.kind);
     options.errors.push_back(is_direction                                    ? wanted.degrees
                              : a.kind == AttributeKind::kTextureCoordinates ? wanted.texels / kTextureSize
                                                                             : 1.0 / 256);

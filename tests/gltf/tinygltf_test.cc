@@ -8,7 +8,7 @@
 #include <locale>
 #include <map>
 
-#include "document/normals.h"
+#include "decoder/smooth_normals.h"
 #include "gltf/test_assets.h"
 
 namespace lacerta {
@@ -46,7 +46,7 @@ Bytes Scene() {
   AssetBuilder builder;
   const TriangleMesh ball = WavySphere(14, 20);
   Json smooth = builder.Primitive(ball);
-  smooth["attributes"]["NORMAL"] = builder.AddFloats(DeriveNormals(ball), false);
+  smooth["attributes"]["NORMAL"] = builder.AddFloats(SmoothNormals(ball.positions, ball.triangles), false);
   builder.AddMesh("smooth", Json::array({smooth}));
   builder.AddMesh("twin", Json::array({smooth}));
   builder.AddMesh("flat", Json::array({builder.Primitive(WavySphere(12, 16, {4, 0, 0}))}));

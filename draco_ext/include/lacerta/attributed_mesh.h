@@ -22,6 +22,8 @@ enum class AttributeKind {
   kGeneric,  // anything that may be interpolated; morph targets are 3 components in model units
 };
 
+inline bool IsDirection(AttributeKind kind) { return kind == AttributeKind::kNormal || kind == AttributeKind::kTangent; }
+
 // Values at the corners of triangles. Where the corners of a vertex do not have the same value the surface has a seam.
 struct MeshAttribute {
   static constexpr uint32_t kNoValue = std::numeric_limits<uint32_t>::max();

@@ -45,14 +45,6 @@ inline std::vector<shapes::NamedShape> ClosedRealMeshes(const std::vector<std::p
   return meshes;
 }
 
-// Both meshes in one, without a common vertex.
-inline TriangleMesh Together(TriangleMesh a, const TriangleMesh& b) {
-  const auto count = static_cast<uint32_t>(a.positions.size());
-  a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
-  for (const Triangle& t : b.triangles) a.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
-  return a;
-}
-
 inline TriangleMesh Moved(TriangleMesh mesh, const Vec3f& by) {
   for (Vec3f& p : mesh.positions) p += by;
   return mesh;

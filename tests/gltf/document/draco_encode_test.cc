@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "document/normals.h"
+#include "decoder/smooth_normals.h"
 #include "gltf/test_assets.h"
 
 namespace lacerta {
@@ -66,7 +66,7 @@ TEST(DracoEncode, KeepsIntegersAndTheLattice) {
 TEST(DracoEncode, DecodersGetTheRoundedValues) {
   const TriangleMesh mesh = testing::WavySphere(9, 14, {0.3f, -2.0f, 5.0f});
   Primitive primitive = WithTexture(mesh);
-  primitive.attributes.push_back({"NORMAL", MakeFloatAccessor(DeriveNormals(mesh))});
+  primitive.attributes.push_back({"NORMAL", MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles))});
   AccessorData texture = MakeFloatAccessor(mesh.positions);
   primitive.attributes.push_back({"COLOR_0", texture});
   primitive.attributes.push_back({"_EXACT", MakeFloatAccessor(mesh.positions)});

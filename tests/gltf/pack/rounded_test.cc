@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "document/normals.h"
+#include "decoder/smooth_normals.h"
 #include "gltf/test_assets.h"
 #include "lacerta/surface_distance.h"
 
@@ -20,7 +20,7 @@ Primitive Textured(float repeats) {
   std::vector<float> texture;
   for (const Vec3f& p : mesh.positions) texture.insert(texture.end(), {repeats * p.x, repeats * p.y});
   primitive.attributes = {{"POSITION", MakeFloatAccessor(mesh.positions)},
-                          {"NORMAL", MakeFloatAccessor(DeriveNormals(mesh))},
+                          {"NORMAL", MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles))},
                           {"TEXCOORD_0", MakeFloatAccessor(texture, 2)}};
   return primitive;
 }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "document/normals.h"
+#include "decoder/smooth_normals.h"
 #include "gltf/test_assets.h"
 #include "lacerta/surface_distance.h"
 
@@ -19,7 +19,7 @@ Primitive Textured() {
   std::vector<float> texture;
   for (const Vec3f& p : mesh.positions) texture.insert(texture.end(), {0.5f + 0.45f * p.x, 0.5f + 0.45f * p.y});
   primitive.attributes = {{"POSITION", MakeFloatAccessor(mesh.positions)},
-                          {"NORMAL", MakeFloatAccessor(DeriveNormals(mesh))},
+                          {"NORMAL", MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles))},
                           {"TEXCOORD_0", MakeFloatAccessor(texture, 2)},
                           {"_MINE", MakeFloatAccessor(mesh.positions)}};
   return primitive;

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "document/normals.h"
+#include "decoder/smooth_normals.h"
 #include "gltf/test_assets.h"
 #include "lacerta/surface_distance.h"
 
@@ -29,7 +29,7 @@ Primitive Half(const TriangleMesh& ball, bool upper) {
   std::vector<float> texture;
   for (const Vec3f& p : half.positions) texture.insert(texture.end(), {0.5f + 0.4f * p.x, 0.5f + 0.4f * p.y});
   primitive.attributes = {{"POSITION", MakeFloatAccessor(half.positions)},
-                          {"NORMAL", MakeFloatAccessor(DeriveNormals(ball))},
+                          {"NORMAL", MakeFloatAccessor(SmoothNormals(ball.positions, ball.triangles))},
                           {"TEXCOORD_0", MakeFloatAccessor(texture, 2)}};
   return primitive;
 }
