@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "document/normals.h"
@@ -177,12 +178,12 @@ StatusOr<FamilyCandidate> ToCandidate(const Context& context, size_t family, Rou
   return candidate;
 }
 
-// With all vertices. Sets *everywhere to RoundedFamily's.
-StatusOr<FamilyCandidate> WithAllVertices(const Context& context, size_t family, const FamilyMeter& meter,
+// With all vertices, where that is no hopeless way to stay under `most_bytes`. Sets *everywhere to RoundedFamily's.
+StatusOr<FamilyCandidate> WithAllVertices(const Context& context, size_t family, const FamilyMeter& meter, uint64_t most_bytes,
                                           std::vector<double>* everywhere) {
   // Vertices with other morph targets must not become one.
   const auto targets_follow = [&](const RoundedFamily& rounded) { return ToCandidate(context, family, rounded).ok(); };
-  LACERTA_ASSIGN_OR_RETURN(RoundedFamily rounded, RoundFamily(meter.primitives(), meter, nullptr, {}, targets_follow));
+  LACERTA_ASSIGN_OR_RETURN(RoundedFamily rounded, RoundFamily(meter.primitives(), meter, nullptr, {}, targets_follow, most_bytes));
   *everywhere = std::move(rounded.everywhere);
   return ToCandidate(context, family, std::move(rounded));
 }
@@ -257,7 +258,8 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
   std::vector<double> everywhere;
   const FamilyMeter meter(PrimitivesOf(context, family), ErrorOf(context, family), context.options->attributes,
                           context.texel_side, ScaleOf(context, family));
-  StatusOr<FamilyCandidate> chosen = WithAllVertices(context, family, meter, &everywhere);
+  const uint64_t most_bytes = is_stream ? least : std::numeric_limits<uint64_t>::max();
+  StatusOr<FamilyCandidate> chosen = WithAllVertices(context, family, meter, most_bytes, &everywhere);
   std::string against = chosen.ok() ? "" : chosen.status().message();
   if (chosen.ok() && chosen.value().bytes >= least) {
     against = "compressed it would be larger (" + std::to_string(chosen.value().bytes) + " bytes with their description)";

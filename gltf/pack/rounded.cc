@@ -69,14 +69,18 @@ class FamilyRounder {
     }
   }
 
-  StatusOr<RoundedFamily> Run() {
+  StatusOr<RoundedFamily> Run(uint64_t most_bytes) {
     constexpr int kMostRounds = 10;
+    constexpr double kHopeless = 1.5;  // of the bytes, whatever a measure would correct
     constexpr double kWorthwhile = 0.01;  // of the bytes, for another measure
     std::optional<Trial> best;
     for (int round = 0; round < kMostRounds; ++round) {
       LACERTA_ASSIGN_OR_RETURN(Trial* trial, Smallest());
       // What is decoded has all that was asked for and nothing smaller is expected: done.
       if (trial == nullptr || trial->is_measured) break;
+      if (static_cast<double>(trial->bytes) > kHopeless * static_cast<double>(most_bytes)) {
+        return Unsupported("compressed it would be larger (about " + std::to_string(trial->bytes) + " bytes)");
+      }
       if (best.has_value() && static_cast<double>(trial->bytes) > (1.0 - kWorthwhile) * static_cast<double>(best->bytes)) break;
       Measure(trial);
       if (trial->met) best = *trial;
@@ -281,8 +285,8 @@ class FamilyRounder {
 
 StatusOr<RoundedFamily> RoundFamily(const std::vector<const Primitive*>& primitives, const FamilyMeter& meter,
                                     const SurfaceErrors* own_errors, const std::vector<double>& everywhere,
-                                    const std::function<bool(const RoundedFamily&)>& is_usable) {
-  return FamilyRounder(primitives, meter, own_errors, everywhere, is_usable).Run();
+                                    const std::function<bool(const RoundedFamily&)>& is_usable, uint64_t most_bytes) {
+  return FamilyRounder(primitives, meter, own_errors, everywhere, is_usable).Run(most_bytes);
 }
 
 }  // namespace lacerta

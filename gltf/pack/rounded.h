@@ -2,7 +2,9 @@
 #ifndef LACERTA_PACK_ROUNDED_H_
 #define LACERTA_PACK_ROUNDED_H_
 
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "document/draco_encode.h"
@@ -29,11 +31,13 @@ struct RoundedFamily {
 // decoded is measured and the forecast corrected, until it meets the meter's targets (and `everywhere` as in
 // ErrorTargets) and no cheaper precision is expected to. What cannot be measured (no area) is held to the forecast. Where
 // `is_usable` refuses what came out, positions get finer.
-// Fails with kUnsupported where no precision meets them, and like EncodeDracoPrimitive.
+// Fails with kUnsupported where no precision meets them or what does is expected to take far more than `most_bytes`, and like
+// EncodeDracoPrimitive.
 StatusOr<RoundedFamily> RoundFamily(const std::vector<const Primitive*>& primitives, const FamilyMeter& meter,
                                     const SurfaceErrors* own_errors = nullptr,
                                     const std::vector<double>& everywhere = {},
-                                    const std::function<bool(const RoundedFamily&)>& is_usable = nullptr);
+                                    const std::function<bool(const RoundedFamily&)>& is_usable = nullptr,
+                                    uint64_t most_bytes = std::numeric_limits<uint64_t>::max());
 
 }  // namespace lacerta
 

@@ -10,6 +10,7 @@
 #include "extension/progressive.h"
 #include "lacerta/gltf.h"
 #include "lacerta/surface_distance.h"
+#include "pack/single_mesh.h"
 #include "unpack/surface_reader.h"
 
 namespace lacerta {
@@ -181,8 +182,8 @@ ValidationReport ValidateGltf(Span<const uint8_t> asset, const ValidateOptions& 
   if (!document.ok()) return {{{true, "", document.status().message()}}, {}};
   Validator validator(document.value(), options);
   StatusOr<GltfDocument> original = NotFound("");
-  if (!options.original.empty()) {
-    original = ParseGltf(options.original, options.original_folder);
+  if (options.original_mesh.has_value() || !options.original.empty()) {
+    original = options.original_mesh.has_value() ? SingleMeshDocument(*options.original_mesh, "") : ParseGltf(options.original, options.original_folder);
     if (!original.ok()) return {{{true, "", "the original: " + original.status().message()}}, {}};
     validator.SetOriginal(&original.value());
   }

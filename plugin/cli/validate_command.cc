@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "lacerta/gltf.h"
+#include "lacerta/mesh_file.h"
 
 namespace lacerta::cli {
 namespace {
@@ -61,6 +62,12 @@ StatusOr<ValidationReport> ValidateFile(const std::string& file, const ValidateA
     LACERTA_ASSIGN_OR_RETURN(original, ReadInput(arguments.original));
     options.original = original;
     options.original_folder = std::filesystem::path(arguments.original).parent_path().string();
+    const StatusOr<MeshFormat> format = DetectMeshFormat(arguments.original, original);
+    if (format.ok() && format.value() != MeshFormat::kGltf) {
+      StatusOr<TriangleMesh> mesh = ParseMesh(original, format.value());
+      if (!mesh.ok()) return mesh.status().WithContext(arguments.original);
+      options.original_mesh = std::move(mesh).value();
+    }
   }
   return ValidateGltf(bytes, options);
 }
@@ -99,7 +106,7 @@ void AddValidateCommand(CLI::App* app, int* exit_code) {
   CLI::App* validate = app->add_subcommand("validate", "Check packed assets: references, streams, bounds, errors");
   validate->add_option("FILE", arguments->inputs, ".glb or .gltf files, patterns, folders; - for standard input")
       ->required();
-  validate->add_option("--original", arguments->original, "The asset before packing: announced errors are measured");
+  validate->add_option("--original", arguments->original, "The asset or mesh before packing: announced errors are measured");
   validate->add_flag("--json", arguments->json, "Print as JSON");
   validate->footer(kExitCodeHelp);
   validate->callback([arguments, exit_code] { *exit_code = RunValidate(*arguments); });

@@ -165,6 +165,7 @@ struct ValidateOptions {
   // The asset before packing, to measure the announced errors against; empty: they are not measured.
   Span<const uint8_t> original;
   std::string original_folder;
+  std::optional<TriangleMesh> original_mesh;  // instead of an asset: what PackMesh was given
 };
 
 struct ValidationIssue {
