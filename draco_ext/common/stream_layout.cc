@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cstring>
 
-#include "common/crc32.h"
+#include "common/crc16.h"
 
 namespace lacerta {
 namespace {
 
-Crc32 ChecksumOf(const BaseMesh& base) {
-  Crc32 crc;
+Crc16 ChecksumOf(const BaseMesh& base) {
+  Crc16 crc;
   uint32_t step_bits;
   std::memcpy(&step_bits, &base.step, sizeof(step_bits));
   crc.AddWord(step_bits);
@@ -28,10 +28,10 @@ bool RefinementHeader::IsSilent(size_t i) const {
   return steps[i].is_silent() && std::all_of(attributes.begin(), attributes.end(), [&](const AttributeHeader& a) { return a.steps[i] == 0; });
 }
 
-uint16_t BaseChecksum(const BaseMesh& base) { return ChecksumOf(base).low16(); }
+uint16_t BaseChecksum(const BaseMesh& base) { return ChecksumOf(base).value(); }
 
 uint16_t BaseChecksum(const AttributedBase& base) {
-  Crc32 crc = ChecksumOf(base.mesh);
+  Crc16 crc = ChecksumOf(base.mesh);
   for (const uint32_t size : base.group_sizes) crc.AddWord(size);
   std::vector<uint8_t> has(base.mesh.lattice.size());
   for (const BaseAttribute& a : base.attributes) {
@@ -49,14 +49,14 @@ uint16_t BaseChecksum(const AttributedBase& base) {
       for (uint32_t c = 0; has[v] != 0 && c < n; ++c) crc.AddWord(static_cast<uint32_t>(a.values[v * n + c]));
     }
   }
-  return crc.low16();
+  return crc.value();
 }
 
 uint16_t SegmentChecksum(int what, Span<const uint8_t> payload) {
-  Crc32 crc;
+  Crc16 crc;
   crc.Add(static_cast<uint8_t>(what));
   crc.Add(payload);
-  return crc.low16();
+  return crc.value();
 }
 
 }  // namespace lacerta

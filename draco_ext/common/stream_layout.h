@@ -62,8 +62,7 @@ inline constexpr int kMaxLayerShift = 7;
 inline uint8_t LayerSegmentByte(const LayerSegment& s) { return static_cast<uint8_t>(s.level | s.shift << 4 | (s.waits ? 0x80 : 0)); }
 inline LayerSegment LayerSegmentFromByte(uint8_t byte) { return {byte & 15, byte >> 4 & 7, (byte & 0x80) != 0}; }
 
-// Lower half of the CRC-32 over step, lattice values (three per vertex) and triangles (three indices each) as 4-byte little-endian
-// words.
+// The CRC-16 over step, lattice values (three per vertex) and triangles (three indices each) as 4-byte little-endian words.
 uint16_t BaseChecksum(const BaseMesh& base);
 
 // The same of a base with attributes: followed by the sizes of the groups, and for each attribute by its flags of groups and by the

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "common/crc32.h"
+#include "common/crc16.h"
 #include "common/octahedral.h"
 #include "common/step_forecast.h"
 #include "decoder/byte_cursor.h"
@@ -156,9 +156,9 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   const size_t checked_size = cursor.position();
   const uint16_t checksum = cursor.Word16();
   if (cursor.at_end()) return Result();
-  Crc32 crc;
+  Crc16 crc;
   crc.Add(bytes.First(checked_size));
-  if (crc.low16() != checksum) return InvalidData("the refinement header is damaged (checksum mismatch)");
+  if (crc.value() != checksum) return InvalidData("the refinement header is damaged (checksum mismatch)");
   header.tags.assign(tags.begin(), tags.end());
   if (cursor.malformed()) return InvalidData("a number in the refinement header exceeds 32 bits");
   if (has_base_step && !IsStepBits(base_step_bits)) return InvalidData("the base step in the refinement header is not a positive number");

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "draco/base_shape.h"
+#include "draco/crowded_input.h"
 #include "draco/custom_form.h"
 #include "draco/decoded_distance.h"
 #include "draco/rate_control.h"
@@ -14,6 +15,7 @@
 #include "draco/still_part.h"
 #include "draco/subdivided_input.h"
 #include "draco/zero_level_search.h"
+#include "geometry/triangle_tree.h"
 #include "lacerta/clean.h"
 #include "lacerta/codec.h"
 #include "lacerta/decoder.h"
@@ -135,13 +137,14 @@ std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const Sur
   return std::move(chosen).value();
 }
 
-// The remeshed surface at the target, or a simplified mesh without levels where that is better.
-StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                    const EncodeOptions& options, EncodeReport report) {
+// The remeshed surface at the target, or a simplified mesh without levels where that is better. crowding: of the mesh (TriangleTree).
+StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, double crowding, const SurfaceDistanceMeter& meter,
+                                     const ResolvedTarget& target, const EncodeOptions& options, EncodeReport report) {
   const auto progress = [&](double share, const char* stage) {
     if (options.progress) options.progress(share, stage);
   };
   if (options.levels == LevelChoice::kNever) return Unsupported("no refinement levels were asked for");
+  if (crowding > kMostCrowding) return Unsupported("too many triangles go through each other for a surface to be followed");
   progress(0.0, "looking at the surface");
   if (const std::optional<ChosenStream> subdivided = EncodeSubdivided(mesh, meter, target, options)) {
     report.subdivided_input = true;
@@ -192,10 +195,12 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   report.input_triangles = mesh.triangles.size();
   report.diagonal = meter.diagonal();
 
-  StatusOr<EncodedParts> encoded = EncodeSurface(mesh, meter, target, options, report);
+  const double crowding = TriangleTree(mesh).Crowding();
+  StatusOr<EncodedParts> encoded = EncodeSurface(mesh, crowding, meter, target, options, report);
   if (!encoded.ok()) {  // without refinement, then, with the reason
     if (options.progress) options.progress(0.1, "simplifying");
-    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, CodeZeroLevel(mesh, meter, target));
+    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, crowding > kMostCrowding ? CodeCrowdedInput(mesh, crowding, meter, target)
+                                                                            : CodeZeroLevel(mesh, meter, target));
     const char* const miss = zero.meets_target ? "" : "; the target is out of reach, this is the nearest";
     encoded = FromZeroLevel(std::move(zero), report, encoded.status().message() + miss);
   }

@@ -8,7 +8,7 @@
 #include "common/attribute_coding.h"
 #include "common/base_tags_coding.h"
 #include "common/coefficient_coding.h"
-#include "common/crc32.h"
+#include "common/crc16.h"
 #include "common/step_forecast.h"
 #include "common/stream_layout.h"
 #include "encoder/byte_writer.h"
@@ -103,9 +103,9 @@ Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps, co
   if (!tags.empty()) PutVarint(tags.size(), &bytes);
   bytes.insert(bytes.end(), tags.begin(), tags.end());
   if (attributes != nullptr) PutAttributes(attributes->coded, &bytes);
-  Crc32 crc;
+  Crc16 crc;
   crc.Add(bytes);
-  PutWord16(crc.low16(), &bytes);
+  PutWord16(crc.value(), &bytes);
   return bytes;
 }
 

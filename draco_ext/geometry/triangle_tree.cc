@@ -153,8 +153,24 @@ struct TriangleTree::Search {
   }
 };
 
+namespace {
+
+// The middle of the box of what faces use; zero where there is none.
+Vec3f MiddleOf(const TriangleMesh& mesh) {
+  Box box;
+  for (const Triangle& t : mesh.triangles) {
+    for (const uint32_t v : t) {
+      if (v < mesh.positions.size() && IsUsable(mesh.positions[v])) box.Add(mesh.positions[v]);
+    }
+  }
+  return box.min * 0.5f + box.max * 0.5f;
+}
+
+}  // namespace
+
 TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   slots_.assign(mesh.triangles.size(), SurfacePoint::kNone);
+  origin_ = MiddleOf(mesh);
   std::vector<Reference> references;
   float largest = 0.0f;
   const auto refer_to_groups_of = [&](uint32_t size) {  // whether none had to be left out
@@ -167,7 +183,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
       for (uint32_t f = first; f < first + size; ++f) {
         for (const uint32_t v : mesh.triangles[f]) {
           usable = usable && v < mesh.positions.size() && IsUsable(mesh.positions[v]);
-          if (usable) reference.box.Add(mesh.positions[v]);
+          if (usable) reference.box.Add(mesh.positions[v] - origin_);
         }
       }
       complete = complete && usable;
@@ -185,7 +201,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
     refer_to_groups_of(1);
   }
   if (references.empty()) return;
-  padding_ = std::max(largest * 0x1p-22f, FLT_MIN);
+  padding_ = std::max(largest * 0x1p-21f, FLT_MIN);
   const uint32_t group_size = in_groups ? kGroupSize : 1;
   nodes_.reserve(in_groups ? 2 * references.size() : references.size() / 2 + 1);
   BuildNode({mesh, references.data(), in_groups}, references.data(), references.data() + references.size(), 0, &nodes_);
@@ -341,7 +357,7 @@ TriangleTree::Node TriangleTree::GroupNode(const TriangleMesh& mesh, uint32_t fi
   for (uint32_t k = 0; k < kWidth; ++k) {
     Box box;
     for (uint32_t i = k * kPartSize; i < (k + 1) * kPartSize; ++i) {
-      for (const uint32_t v : mesh.triangles[first_face + i]) box.Add(mesh.positions[v]);
+      for (const uint32_t v : mesh.triangles[first_face + i]) box.Add(mesh.positions[v] - origin_);
     }
     SetBox(box, padding_, static_cast<int>(k), &node);
     node.child[k] = first_slot + k * kPartSize;
@@ -367,7 +383,8 @@ void TriangleTree::TestSlot(uint32_t slot, Search* search) const {
 
 void TriangleTree::Traverse(Search* search) const {
   if (nodes_.empty()) return;
-  const float px = search->p.x, py = search->p.y, pz = search->p.z;
+  const Vec3f local = search->p - origin_;
+  const float px = local.x, py = local.y, pz = local.z;
   StackEntry stack[kStackSize];
   int size = 0;
   uint32_t current = 0;
@@ -447,6 +464,7 @@ void TriangleTree::PointsNear(const Vec3f& p, float max_squared_distance, size_t
   search.pd = Vec3Cast<double>(p);
   search.SetBound(max_squared_distance);
   const size_t most = points->size() + max_points;
+  const Vec3f local = p - origin_;
   uint32_t stack[kStackSize];
   int size = 0;
   stack[size++] = 0;
@@ -455,7 +473,7 @@ void TriangleTree::PointsNear(const Vec3f& p, float max_squared_distance, size_t
     for (int k = 0; k < kWidth; ++k) {
       float d2 = 0.0f;
       for (int axis = 0; axis < 3; ++axis) {
-        const float beyond = std::max(std::fabs(node.center[axis][k] - p[axis]) - node.half_size[axis][k], 0.0f);
+        const float beyond = std::max(std::fabs(node.center[axis][k] - local[axis]) - node.half_size[axis][k], 0.0f);
         d2 += beyond * beyond;
       }
       if (!(d2 < search.box_bound2)) continue;
@@ -475,6 +493,31 @@ void TriangleTree::PointsNear(const Vec3f& p, float max_squared_distance, size_t
       }
     }
   }
+}
+
+double TriangleTree::Crowding() const {
+  if (nodes_.empty()) return 0.0;
+  constexpr size_t kMostPoints = 256;
+  const size_t num_points = std::min(kMostPoints, corners_.size());
+  uint64_t faces = 0;
+  for (size_t i = 0; i < num_points; ++i) {
+    const Corners& t = corners_[i * corners_.size() / num_points];
+    const Vec3f point = (t[0] - origin_) * (1 / 3.0f) + (t[1] - origin_) * (1 / 3.0f) + (t[2] - origin_) * (1 / 3.0f);
+    uint32_t stack[kStackSize];
+    int size = 0;
+    stack[size++] = 0;
+    while (size > 0) {
+      const Node& node = nodes_[stack[--size]];
+      for (int k = 0; k < kWidth; ++k) {
+        bool is_inside = true;
+        for (int axis = 0; axis < 3; ++axis) is_inside = is_inside && std::fabs(node.center[axis][k] - point[axis]) <= node.half_size[axis][k];
+        if (!is_inside) continue;
+        faces += node.count[k];
+        if (node.count[k] == 0) stack[size++] = node.child[k];
+      }
+    }
+  }
+  return static_cast<double>(faces) / static_cast<double>(num_points);
 }
 
 namespace {
@@ -509,6 +552,7 @@ void TriangleTree::IntersectLine(const Vec3f& origin, const Vec3f& direction, fl
                                  std::vector<LineHit>* hits) const {
   if (nodes_.empty() || !IsUsable(origin) || !IsUsable(direction) || direction == Vec3f{} || !(t_min <= t_max)) return;
   const Vec3d origin_d = Vec3Cast<double>(origin), direction_d = Vec3Cast<double>(direction);
+  const Vec3d local = origin_d - Vec3Cast<double>(origin_);
   const ShearedLine line(origin_d, direction_d);
   // Boxes are padded, so that an origin in the plane of a side is inside; any large number then serves as 1 / 0.
   Vec3d inverse;
@@ -522,7 +566,7 @@ void TriangleTree::IntersectLine(const Vec3f& origin, const Vec3f& direction, fl
       if (node.half_size[0][k] < 0.0f) continue;
       double enter = t_min, leave = t_max;
       for (int axis = 0; axis < 3; ++axis) {
-        const double middle = (static_cast<double>(node.center[axis][k]) - origin_d[axis]) * inverse[axis];
+        const double middle = (static_cast<double>(node.center[axis][k]) - local[axis]) * inverse[axis];
         const double half = static_cast<double>(node.half_size[axis][k]) * std::fabs(inverse[axis]);
         enter = std::max(enter, middle - half);
         leave = std::min(leave, middle + half);

@@ -66,6 +66,10 @@ class TriangleTree {
   void IntersectLine(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max,
                      std::vector<LineHit>* hits) const;
 
+  // The number of faces in leaves whose boxes hold a point of the mesh, in the mean of some hundred points: what a query near the
+  // surface has to look at. Ten or so for a surface, however large; of triangles that go through each other a share of all of them.
+  double Crowding() const;
+
   // The faces, without those left out, in an order in which neighbours in the list are mostly neighbours in space.
   const std::vector<uint32_t>& faces_in_tree_order() const { return faces_; }
   // The corners of those faces.
@@ -74,7 +78,8 @@ class TriangleTree {
  private:
   static constexpr int kWidth = 4;  // children of a node
 
-  // Boxes of the children as structure of arrays and by center and half size, so that the compiler tests four at once.
+  // Boxes of the children as structure of arrays and by center and half size, so that the compiler tests four at once; relative to
+  // the origin of the tree.
   struct alignas(64) Node {
     float center[3][kWidth];
     float half_size[3][kWidth];  // negative in a missing child
@@ -95,7 +100,9 @@ class TriangleTree {
   std::vector<Corners> corners_;  // per slot
   std::vector<uint32_t> faces_;   // per slot
   std::vector<uint32_t> slots_;   // per face of the mesh; kNone for those left out
-  float padding_ = 0.0f;  // by which every box is larger than what it holds: a few ulps of the largest coordinate
+  // The middle of the mesh: boxes relative to it are tight however far the mesh is from zero.
+  Vec3f origin_;
+  float padding_ = 0.0f;  // by which every box is larger than what it holds: a few ulps of the largest coordinate in it
 };
 
 }  // namespace lacerta

@@ -4,11 +4,11 @@
 reference_decoder.py GOLDEN.json...   decodes the .lac file beside each and compares coefficients and positions, or the compact base
                                       in the .cbase file beside it and compares lattice and triangles.
 """
+import binascii
 import json
 import math
 import struct
 import sys
-import zlib
 
 
 # --- Refinement header, segments ---
@@ -40,6 +40,10 @@ class Reader:
         return folded >> 1 ^ -(folded & 1)
 
 
+def crc16(data):
+    return binascii.crc_hqx(data, 0xFFFF)
+
+
 def step_value(bits):
     return struct.unpack("<f", struct.pack("<I", bits << 16))[0]
 
@@ -52,7 +56,7 @@ def base_checksum(base):
         data += bytes(attribute["in_group"])
         used = sorted({v for f in faces_with(base, attribute) for v in base["triangles"][f]})
         data += b"".join(struct.pack("<i", x) for v in used for x in integers_at(base, attribute, v))
-    return zlib.crc32(data) & 0xFFFF
+    return crc16(data)
 
 
 def next_step(bits):
@@ -127,14 +131,14 @@ def read_header(reader, base):
     assert counts & 192 != 192
     attributes = read_attributes(reader, counts & 15) if counts & 128 else None
     end = reader.at
-    assert reader.unsigned(2) == zlib.crc32(reader.data[:end]) & 0xFFFF
+    assert reader.unsigned(2) == crc16(reader.data[:end])
     return levels, tags, counts & 64 != 0, attributes
 
 
 def read_segment(reader, what):
     length, checksum = reader.varint(), reader.unsigned(2)
     payload = reader.take(length)
-    assert zlib.crc32(bytes([what]) + payload) & 0xFFFF == checksum
+    assert crc16(bytes([what]) + payload) == checksum
     return payload
 
 

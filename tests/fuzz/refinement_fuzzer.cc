@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/base_tags_coding.h"
-#include "common/crc32.h"
+#include "common/crc16.h"
 #include "common/stream_layout.h"
 #include "decoder/range_decoder.h"
 #include "draco_ext/encoder/attributed_test_streams.h"
@@ -98,9 +98,9 @@ Bytes MakeStream(const BaseMesh& base, const AttributedBase* attributed, bool ha
     bytes[4] |= lacerta::kHasAttributes;
     PutAttributes(*attributed, num_levels, input, &bytes);
   }
-  lacerta::Crc32 crc;
+  lacerta::Crc16 crc;
   crc.Add(bytes);
-  Put(crc.low16(), 2, &bytes);
+  Put(crc.value(), 2, &bytes);
   PutSegments(flags, num_levels, attributed != nullptr, has_layers, input, &bytes);
   return bytes;
 }

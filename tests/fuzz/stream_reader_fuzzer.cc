@@ -1,6 +1,6 @@
 // The parsers of header and segment on arbitrary bytes: first as they are, then with the checksum that they should
 // have.
-#include "common/crc32.h"
+#include "common/crc16.h"
 #include "common/stream_layout.h"
 #include "decoder/stream_reader.h"
 #include "draco_ext/encoder/test_streams.h"
@@ -38,10 +38,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size < 2) return 0;
   Bytes fixed = {'L', 'A', 'C', lacerta::kRefinementVersion};
   fixed.insert(fixed.end(), data, data + size);
-  lacerta::Crc32 crc;
+  lacerta::Crc16 crc;
   crc.Add(fixed);
-  fixed.push_back(static_cast<uint8_t>(crc.low16()));
-  fixed.push_back(static_cast<uint8_t>(crc.low16() >> 8));
+  fixed.push_back(static_cast<uint8_t>(crc.value()));
+  fixed.push_back(static_cast<uint8_t>(crc.value() >> 8));
   ReadBoth(fixed);
   const Span<const uint8_t> payload = Span<const uint8_t>(data, size).First(std::min<size_t>(size, 127));
   Bytes segment = {static_cast<uint8_t>(payload.size())};

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "common/crc32.h"
+#include "common/crc16.h"
 #include "common/stream_layout.h"
 #include "decoder/stream_reader.h"
 #include "draco_ext/encoder/attributed_test_streams.h"
@@ -105,9 +105,9 @@ std::vector<Part> PartsOf(const Bytes& bytes) {
 
 void MakeChecksumRight(const Part& part, Bytes* bytes) {
   const Span<const uint8_t> covered = Span<const uint8_t>(*bytes).Subspan(part.begin).First(part.end - part.begin);
-  Crc32 crc;
+  Crc16 crc;
   crc.Add(covered);
-  const uint16_t checksum = part.what == 0 ? crc.low16() : SegmentChecksum(part.what, covered);
+  const uint16_t checksum = part.what == 0 ? crc.value() : SegmentChecksum(part.what, covered);
   (*bytes)[part.checksum] = static_cast<uint8_t>(checksum);
   (*bytes)[part.checksum + 1] = static_cast<uint8_t>(checksum >> 8);
 }
@@ -160,25 +160,20 @@ TEST_P(MutationTest, EveryTruncationDecodesToWhatItHolds) {
   }
 }
 
-// Half a CRC-32 misses one change in 65,536, and unlike a CRC of 16 bits those of one byte are not spared (0x37 to 0xc6 in byte 397 of the
-// stream with attributes). What is missed decodes to something sound.
+// A CRC-16 notices every change of one byte that leaves the length of what it covers alone; of others it would miss one in 65,536.
 TEST_P(MutationTest, ChangedBytesAreNoticed) {
   std::mt19937 random(5);
-  size_t num_changes = 0, num_missed = 0;
   const bool has_layers = ReadRefinementInfo(stream_).value().has_layers;
   for (size_t i = 0; i < stream_.size(); ++i) {
     for (const uint8_t value : OtherValues(stream_[i], &random)) {
       Bytes changed = stream_;
       changed[i] = value;
       const ProgressiveDecoder decoder = Decode(GetParam(), changed, changed.size());
-      ++num_changes;
-      num_missed += decoder.is_complete();
-      if (decoder.is_complete()) continue;
+      ASSERT_FALSE(decoder.is_complete()) << "byte " << i << " as " << int{value};
       ASSERT_TRUE(has_layers || IsPrefixOfWhole(decoder)) << "byte " << i << " as " << int{value};
       ASSERT_LE(decoder.bytes_used(), i) << "byte " << i << " as " << int{value};
     }
   }
-  EXPECT_LE(num_missed, num_changes / 16384) << "of " << num_changes;
 }
 
 TEST_P(MutationTest, ChangedBytesWithTheRightChecksumDecodeOrAreRefused) {

@@ -10,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-#include "common/crc32.h"
+#include "common/crc16.h"
 #include "decoder/stream_reader.h"
 #include "draco_ext/encoder/test_streams.h"
 #include "encoder/stream_writer.h"
@@ -47,10 +47,10 @@ RefinementResult Decode(const BaseMesh& base, const Bytes& bytes) { return Decod
 
 // Writes the right checksum into the header at the beginning of a stream.
 void FixHeaderChecksum(size_t header_size, Bytes* bytes) {
-  Crc32 crc;
+  Crc16 crc;
   crc.Add(Span<const uint8_t>(*bytes).First(header_size - 2));
-  (*bytes)[header_size - 2] = static_cast<uint8_t>(crc.low16());
-  (*bytes)[header_size - 1] = static_cast<uint8_t>(crc.low16() >> 8);
+  (*bytes)[header_size - 2] = static_cast<uint8_t>(crc.value());
+  (*bytes)[header_size - 1] = static_cast<uint8_t>(crc.value() >> 8);
 }
 
 // Where fields of the header of two levels are: after mark and version, levels, base step, checksum of the base.

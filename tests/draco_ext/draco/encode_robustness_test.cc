@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <numeric>
 #include <random>
 #include <string>
@@ -39,9 +40,13 @@ EncodeOptions Options(LevelChoice levels) {
   return options;
 }
 
-// The message of a refusal, or nothing; a stream is sound.
+constexpr double kMostSeconds = 60;  // of all threads; measured are up to 4
+
+// The message of a refusal, or nothing; a stream is sound. Either comes soon.
 std::string Encode(const TriangleMesh& mesh, LevelChoice levels) {
+  const std::clock_t begin = std::clock();
   const StatusOr<EncodedMesh> encoded = EncodeMesh(mesh, Options(levels));
+  EXPECT_LE(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, kMostSeconds);
   if (!encoded.ok()) {
     EXPECT_NE(encoded.status().message(), "");
     return encoded.status().message();
@@ -123,17 +128,62 @@ TEST(EncodeRobustnessTest, RandomTrianglesAreEncoded) {
   }
 }
 
+// As many as a library of instances has when somebody joins them.
+TEST(EncodeRobustnessTest, TwentyThousandQuadsAreEncoded) {
+  std::mt19937 random(4);
+  const auto coordinate = [&] { return static_cast<float>(random() % 100001) / 50000 - 1; };
+  TriangleMesh mesh;
+  for (uint32_t i = 0; i < 20'000; ++i) {
+    const Vec3f corner = {coordinate(), coordinate(), coordinate()};
+    mesh.positions.insert(mesh.positions.end(), {corner, corner + Vec3f{0.01f, 0, 0}, corner + Vec3f{0.01f, 0.01f, 0}, corner + Vec3f{0, 0.01f, 0}});
+    const uint32_t a = 4 * i;
+    mesh.triangles.insert(mesh.triangles.end(), {{a, a + 1, a + 2}, {a, a + 2, a + 3}});
+  }
+  EXPECT_EQ(Encode(mesh, LevelChoice::kWhereTheyPay), "");
+}
+
+// Every query of a closest point looks at a share of all triangles here, so that there may not be many queries.
+TEST(EncodeRobustnessTest, SoupsAreEncodedAsTheyAre) {
+  for (const uint32_t num_triangles : {1'500u, 20'000u}) {
+    std::mt19937 random(num_triangles);
+    const auto coordinate = [&] { return static_cast<float>(random() % 10001) / 5000 - 1; };
+    TriangleMesh mesh;
+    for (uint32_t f = 0; f < num_triangles; ++f) {
+      for (int k = 0; k < 3; ++k) mesh.positions.push_back({coordinate(), coordinate(), coordinate()});
+      mesh.triangles.push_back({3 * f, 3 * f + 1, 3 * f + 2});
+    }
+    EXPECT_EQ(Encode(mesh, LevelChoice::kWhereTheyPay), "");
+    if (num_triangles > 1'500u) continue;
+    const EncodedMesh encoded = EncodeMesh(mesh, Options(LevelChoice::kAlways)).value();
+    EXPECT_THAT(encoded.report.reason, HasSubstr("go through each other"));
+    EXPECT_EQ(encoded.report.levels.back().triangles, num_triangles);
+    EXPECT_GE(encoded.report.levels.back().psnr, 48.0);
+    EXPECT_LE(encoded.report.levels.back().psnr, 48.5);
+  }
+}
+
+// Far from zero floats are coarse: from steps of 1/128 of the radius to triangles that fall together.
+TEST(EncodeRobustnessTest, SurfacesFarFromZeroAreEncoded) {
+  const TriangleMesh scan = shapes::BumpySphere(5, 0.2f, 0.002f);
+  for (const float offset : {1e5f, 1e6f, 1e7f}) EXPECT_EQ(Encode(Moved(scan, 1.0f, {offset, offset, offset}), LevelChoice::kWhereTheyPay), "") << offset;
+}
+
 // Coordinates of a far corner round differently, and lattices fit differently; otherwise bytes are a matter of shape.
 TEST(EncodeRobustnessTest, PlaceSizeAndOrderHardlyChangeTheBytes) {
   const TriangleMesh mesh = Bumpy();
-  TriangleMesh turned = mesh, reordered = mesh;
+  TriangleMesh turned = mesh, reordered = mesh, renumbered = mesh;
   for (Vec3f& p : turned.positions) p = {0.8f * p.x - 0.6f * p.y, 0.6f * p.x + 0.8f * p.y, p.z};
-  std::reverse(reordered.triangles.begin(), reordered.triangles.end());
+  std::mt19937 random(6);
+  std::shuffle(reordered.triangles.begin(), reordered.triangles.end(), random);
+  for (Triangle& t : reordered.triangles) std::rotate(t.begin(), t.begin() + random() % 3, t.end());
+  std::reverse(renumbered.positions.begin(), renumbered.positions.end());
+  const auto last = static_cast<uint32_t>(mesh.positions.size() - 1);
+  for (Triangle& t : renumbered.triangles) t = {last - t[0], last - t[1], last - t[2]};
   const auto encode = [](const TriangleMesh& input) { return EncodeMesh(input, Options(LevelChoice::kAlways)).value(); };
   const EncodedMesh plain = encode(mesh);
   ASSERT_TRUE(plain.report.progressive);
   const auto bytes = static_cast<double>(plain.stream.size());
-  for (const TriangleMesh& other : {Moved(mesh, 1000.0f, {}), Moved(mesh, 1e-6f, {}), Moved(mesh, 1.0f, {3, -2, 1}), turned, reordered}) {
+  for (const TriangleMesh& other : {Moved(mesh, 1000.0f, {}), Moved(mesh, 1e-6f, {}), Moved(mesh, 1.0f, {3, -2, 1}), turned, reordered, renumbered}) {
     const EncodedMesh encoded = encode(other);
     EXPECT_NEAR(static_cast<double>(encoded.stream.size()), bytes, 0.15 * bytes);
     EXPECT_NEAR(encoded.report.levels.back().psnr, plain.report.levels.back().psnr, 0.3);  // both within 0.3 dB over the target

@@ -250,6 +250,41 @@ TEST(TriangleTree, ExtremeScalesWork) {
   }
 }
 
+TEST(TriangleTree, PlacesFarFromZeroAreAsAccurateAndAsFast) {
+  const TriangleMesh near = shapes::BumpySphere(5, 0.2f, 0.002f);
+  const double crowding = TriangleTree(near).Crowding();
+  EXPECT_GT(crowding, 4.0);  // its own leaf at least, and neighbors
+  EXPECT_LT(crowding, 40.0);
+  std::mt19937 random(9);
+  for (const float offset : {1e2f, 1e4f}) {
+    TriangleMesh far = near;
+    for (Vec3f& p : far.positions) p = p + Vec3f{offset, -offset, offset};
+    far.positions.push_back({-1e9f, 0, 0});  // of no face
+    const TriangleTree tree(far);
+    EXPECT_NEAR(tree.Crowding(), crowding, 0.3 * crowding);
+    for (int k = 0; k < 20; ++k) {
+      const Vec3f p = PointOnFace(far, random() % far.triangles.size(), {0.25f, 0.5f, 0.25f}) + RandomPoint(&random, k % 2 == 0 ? 0.01f : 3.0f);
+      const double expected = BruteForceDistance(far, p);
+      EXPECT_NEAR(std::sqrt(static_cast<double>(tree.ClosestPoint(p).squared_distance)), expected, 1e-6 * expected + 1e-15);
+    }
+  }
+}
+
+TEST(TriangleTree, CrowdingGrowsWithTrianglesThroughEachOther) {
+  const auto crowding_of = [](uint32_t num_triangles) {
+    std::mt19937 random(2);
+    TriangleMesh soup;
+    for (uint32_t i = 0; i < 3 * num_triangles; ++i) soup.positions.push_back(RandomPoint(&random, 1.0f));
+    for (uint32_t f = 0; f < num_triangles; ++f) soup.triangles.push_back({3 * f, 3 * f + 1, 3 * f + 2});
+    return TriangleTree(soup).Crowding();
+  };
+  const double of_1000 = crowding_of(1000), of_4000 = crowding_of(4000);
+  EXPECT_GT(of_1000, 100.0);
+  EXPECT_LT(of_1000, 1000.0);
+  EXPECT_GT(of_4000, 2.5 * of_1000);
+  EXPECT_EQ(TriangleTree({}).Crowding(), 0.0);
+}
+
 TEST(TriangleTree, CrowdedAndStretchedInputsStayWithinTheStack) {
   TriangleMesh mesh;
   // Many times the same face, and faces that shrink by halves towards a corner, which the heuristic splits off one by
