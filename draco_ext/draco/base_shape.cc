@@ -40,6 +40,11 @@ double LogDetailBits(const InputSurface& surface, const CollapseHistory& history
 
 CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& topology, double typical_base, double lambda,
                                   const std::vector<double>& sizes) {
+  if (sizes.empty()) {
+    DecimateOptions options;
+    options.aspect_power = kAspectPowers[0];
+    return Decimate(surface.mesh(), topology, options);
+  }
   std::array<std::optional<CollapseHistory>, kAspectPowers.size()> histories;
   tbb::parallel_for(size_t{0}, histories.size(), [&](size_t h) {
     DecimateOptions options;

@@ -170,7 +170,7 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, double crowding, 
   std::optional<ZeroLevelStream> simpler;
   history.reset();  // the largest of what is no longer needed
   if (sequence) {
-    LACERTA_ASSIGN_OR_RETURN(simpler, SimplerIfBetter(mesh, *sequence, meter, target, chosen.measured));
+    LACERTA_ASSIGN_OR_RETURN(simpler, SimplerIfBetter(mesh, *sequence, meter, target, chosen.measured, EffortOf(options.effort)));
   }
   const std::string reason = simpler ? ReasonForSimpler(*simpler, target) : ReasonForMiss(chosen.measured, target);
   if (simpler) return FromZeroLevel(std::move(*simpler), report, reason);
@@ -200,7 +200,7 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   if (!encoded.ok()) {  // without refinement, then, with the reason
     if (options.progress) options.progress(0.1, "simplifying");
     LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, crowding > kMostCrowding ? CodeCrowdedInput(mesh, crowding, meter, target)
-                                                                            : CodeZeroLevel(mesh, meter, target));
+                                                                            : CodeZeroLevel(mesh, meter, target, EffortOf(options.effort)));
     const char* const miss = zero.meets_target ? "" : "; the target is out of reach, this is the nearest";
     encoded = FromZeroLevel(std::move(zero), report, encoded.status().message() + miss);
   }

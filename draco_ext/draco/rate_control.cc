@@ -57,7 +57,7 @@ class Ladder {
   // worse: one alone may be a fluke of its simplification. Returns the most promising rungs, best first; at least one.
   StatusOr<std::vector<int>> FindBest(const std::function<void(double, const char*)>& progress) {
     const int first = std::clamp(RungOfSize(TypicalBase(TypicalPsnr(target_, num_input_))), first_, last_);
-    Visit({first - 1, first, first + 1});
+    Visit(effort_.enough_sizes == 1 ? std::vector<int>{first} : std::vector<int>{first - 1, first, first + 1});
     for (;;) {
       if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(rungs_.size())), "choosing the base mesh");
       const std::vector<int> ranking = Ranking();

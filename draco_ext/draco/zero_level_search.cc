@@ -36,8 +36,8 @@ bool IsHopeless(const SimplificationSequence& sequence, const SurfaceDistanceMet
 class ZeroLevelSearch {
  public:
   ZeroLevelSearch(const TriangleMesh& mesh, const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter,
-                  const ResolvedTarget& target)
-      : mesh_(mesh), meter_(meter), target_(target), sequence_(sequence), fit_target_(mesh, FewestSamples(mesh)) {
+                  const ResolvedTarget& target, const SearchEffort& effort)
+      : mesh_(mesh), meter_(meter), target_(target), tries_(effort.zero_level_tries), sequence_(sequence), fit_target_(mesh, FewestSamples(mesh)) {
     if (!target.is_rate) distortion_ = Square(DistanceOfPsnr(target.psnr, meter.diagonal()));
   }
 
@@ -214,7 +214,8 @@ class ZeroLevelSearch {
     ZeroLevelCandidate& candidate = *trial.candidate;
     constexpr int kFitRounds = 2;
     const size_t triangles = candidate.num_triangles();
-    const int num_tries = triangles < 2000 ? 12 : triangles < 5000 ? 6 : 4;
+    const int usual_tries = triangles < 2000 ? 12 : triangles < 5000 ? 6 : 4;
+    const int num_tries = std::max(2, static_cast<int>(std::lround(tries_ * usual_tries)));
     const int descent_rounds = triangles < 5000 ? 3 : 2;
     TakeSamples(8, std::max<size_t>(triangles, std::min<size_t>(mesh_.triangles.size(), 2000)));
     const double added = target_.is_rate ? candidate.fit_distortion() : distortion_ - candidate.fit_distortion();
@@ -254,6 +255,7 @@ class ZeroLevelSearch {
   const TriangleMesh& mesh_;
   const SurfaceDistanceMeter& meter_;
   const ResolvedTarget target_;
+  const double tries_;  // SearchEffort::zero_level_tries
   const SimplificationSequence& sequence_;
   FitTarget fit_target_;
   double distortion_ = 0;  // of a PSNR target
@@ -263,20 +265,22 @@ class ZeroLevelSearch {
 
 }  // namespace
 
-StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target) {
+StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
+                                        const SearchEffort& effort) {
   const SimplificationSequence sequence(mesh);
-  ZeroLevelSearch search(mesh, sequence, meter, target);
+  ZeroLevelSearch search(mesh, sequence, meter, target, effort);
   LACERTA_RETURN_IF_ERROR(search.FindSize(std::numeric_limits<double>::infinity()).status());
   return search.Finish();
 }
 
 StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const SimplificationSequence& sequence,
-                                                         const SurfaceDistanceMeter& meter, const ResolvedTarget& target, const MeasuredStream& coded) {
+                                                         const SurfaceDistanceMeter& meter, const ResolvedTarget& target, const MeasuredStream& coded,
+                                                         const SearchEffort& effort) {
   const double most_bytes = coded.meets_target ? static_cast<double>(coded.stream.size()) : std::numeric_limits<double>::infinity();
   std::optional<ZeroLevelStream> result;
   constexpr double kLevelsWorthBytes = 0.05, kLevelsWorthPsnr = 0.3;
   if (IsHopeless(sequence, meter, target, (1 - kLevelsWorthBytes) * most_bytes)) return result;
-  ZeroLevelSearch search(mesh, sequence, meter, target);
+  ZeroLevelSearch search(mesh, sequence, meter, target, effort);
   LACERTA_ASSIGN_OR_RETURN(const bool may_be_better, search.FindSize(most_bytes));
   if (!may_be_better) return result;
   LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, search.Finish());

@@ -23,14 +23,15 @@ struct ZeroLevelStream {
 
 // The best zero-level stream found: fewest bytes at a PSNR, highest PSNR at a number of bytes, over numbers of triangles and steps
 // of the lattice; where nothing meets the target, the nearest. mesh: any that passed cleaning. Fails as EncodeZeroLevel does.
-StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target);
+StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
+                                        const SearchEffort& effort = SearchEffort());
 
 // The same where it clearly beats `coded`, which has levels to show for its bytes: it meets the target in 5 % fewer of them, or with a
 // PSNR 0.3 dB higher in as many, or comes nearer to it. None where it does not, which is often seen early. sequence: of
 // `mesh`.
 StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const SimplificationSequence& sequence,
                                                          const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                                         const MeasuredStream& coded);
+                                                         const MeasuredStream& coded, const SearchEffort& effort = SearchEffort());
 
 }  // namespace lacerta
 

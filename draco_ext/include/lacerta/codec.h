@@ -51,7 +51,7 @@ enum class LevelChoice {
 
 // How much the encoder tries; decoding takes the same time whatever it was.
 enum class Effort {
-  kFast,    // fewer base sizes and passes: 30 % less time, 2 % more bytes
+  kFast,    // one base size
   kNormal,
   kBest,    // more of both: 80 % more time, 2 % fewer bytes
 };
