@@ -17,7 +17,7 @@ namespace {
 using lacerta::testing::Moved;
 using lacerta::testing::PositionOf;
 using lacerta::testing::RandomPointOn;
-using lacerta::testing::Together;
+using lacerta::Together;
 
 struct Case {
   const char* name;

@@ -21,7 +21,7 @@ using lacerta::testing::PositionOf;
 using lacerta::testing::RandomPointOn;
 using lacerta::testing::Scaled;
 using lacerta::testing::Tetrahedron;
-using lacerta::testing::Together;
+using lacerta::Together;
 
 CollapseHistory DecimateTo(const TriangleMesh& mesh, uint32_t target) {
   DecimateOptions options;

@@ -26,7 +26,7 @@ using lacerta::testing::RealMesh;
 using lacerta::testing::Remesh;
 using lacerta::testing::Scaled;
 using lacerta::testing::TimeOf;
-using lacerta::testing::Together;
+using lacerta::Together;
 
 TriangleMesh Finest(const NormalMesh& mesh) {
   StatusOr<TriangleMesh> finest = MeshAtLevel(mesh.mesh, mesh.mesh.num_levels);

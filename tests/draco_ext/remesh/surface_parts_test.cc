@@ -15,7 +15,7 @@ namespace {
 
 using lacerta::testing::Moved;
 using lacerta::testing::Tetrahedron;
-using lacerta::testing::Together;
+using lacerta::Together;
 
 size_t NumCorners(const Topology& t) {
   return static_cast<size_t>(std::count(t.role.begin(), t.role.end(), CurveRole::kCorner));

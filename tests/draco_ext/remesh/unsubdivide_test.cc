@@ -19,7 +19,7 @@
 namespace lacerta {
 namespace {
 
-using lacerta::testing::Together;
+using lacerta::Together;
 
 // `base` split num_levels times, with the vertices at the midpoints of edges.
 TriangleMesh Split(const TriangleMesh& base, int num_levels) {
