@@ -9,8 +9,9 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
     : primitives_(std::move(primitives)), error_(error), attribute_targets_(targets),
       texels_per_unit_(std::move(texels_per_unit)) {
   StatusOr<AttributedMesh> original = ToAttributedMesh(primitives_, texels_per_unit_, OtherAttributes::kLeaveOut);
-  StatusOr<SurfaceErrorMeter> meter = original.status();
-  if (original.ok()) meter = SurfaceErrorMeter::Create(original.value(), static_cast<double>(texel_side));
+  status_ = original.status();
+  if (!original.ok()) return;
+  StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(original.value(), static_cast<double>(texel_side));
   status_ = meter.status();
   if (!meter.ok()) return;
   original_ = std::move(original).value();
