@@ -19,8 +19,8 @@ TEST(AttributedCandidateTest, StreamsMeetTheirTargetsAndLeaveLittleOfThem) {
   for (const double psnr : {66.0, 72.0}) {
     SCOPED_TRACE(psnr);
     const ErrorTargets targets = TargetsFor(mesh, meter.diagonal() * std::pow(10, -psnr / 20), 2, 2);
-    ASSERT_TRUE(candidate.CanMeet(targets).value());
-    const AttributedTrial trial = candidate.Meet(targets, 10, 20'000).value();
+    ASSERT_TRUE(candidate.CanMeet(targets));
+    const AttributedTrial trial = candidate.Meet(targets, {8, 6, 20'000}).value();
     EXPECT_LE(trial.ratio, 1);
     EXPECT_GT(trial.ratio, 0.7);
     EXPECT_LT(trial.errors.turned, 1e-3);
@@ -28,7 +28,7 @@ TEST(AttributedCandidateTest, StreamsMeetTheirTargetsAndLeaveLittleOfThem) {
     EXPECT_LT(trial.stream.size(), 3000u);  // of a surface of 9216 triangles
   }
   // No stream of that base is as near as this.
-  EXPECT_FALSE(candidate.CanMeet(TargetsFor(mesh, meter.diagonal() * 1e-7, 2, 2)).value());
+  EXPECT_FALSE(candidate.CanMeet(TargetsFor(mesh, meter.diagonal() * 1e-7, 2, 2)));
 }
 
 }  // namespace
