@@ -32,9 +32,9 @@ struct AttributedTrial {
 };
 
 struct MeetOptions {
-  int first_tries = 6;   // until the targets are met
+  int first_tries = 6;   // until the targets are met, > 0
   int finer_tries = 4;   // with more precise positions than those need
-  uint64_t num_samples = 50'000;  // of the measure
+  uint64_t num_samples = 50'000;  // of the measure that the stream is held to; the search takes a quarter
   size_t most_bytes = std::numeric_limits<size_t>::max();  // given up where the stream seems to need as many or more
 };
 

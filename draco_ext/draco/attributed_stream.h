@@ -23,7 +23,7 @@ struct AttributedStreamOptions {
   double lambda = 0;       // squared model units per bit of positions, > 0: as in NormalMeshCandidate::Code
   int last_detailed = 0;   // for StepsForSlope; 0: LastDetailedLevel
   int passes = 3;
-  // For each attribute the error to stay within, root mean square over the surface, beside what positions do: in the attribute's own units,
+  // For each attribute the error to stay within, root mean square over the 99 % of the surface where it is least, beside what positions do: in the attribute's own units,
   // of normals and tangents in degrees; > 0.
   std::vector<double> errors;
 };
