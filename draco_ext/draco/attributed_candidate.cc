@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "draco/candidate_search.h"
-#include "remesh/level_attributes.h"
+#include "remesh/level_wedges.h"
 
 namespace lacerta {
 namespace {

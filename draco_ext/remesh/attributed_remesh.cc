@@ -7,9 +7,11 @@
 #include "geometry/bounding_box.h"
 #include "geometry/group_surface.h"
 #include "remesh/attribute_fit.h"
+#include "remesh/base_attributes.h"
 #include "remesh/base_parts.h"
 #include "remesh/decimate.h"
 #include "remesh/level_attributes.h"
+#include "remesh/level_wedges.h"
 #include "remesh/piercing.h"
 #include "remesh/surface_fit.h"
 

@@ -20,7 +20,7 @@
 #include "lacerta/surface_distance.h"
 #include "remesh/attributed_remesh.h"
 #include "remesh/attributed_still.h"
-#include "remesh/level_attributes.h"
+#include "remesh/level_wedges.h"
 #include "remesh/simplify_to_errors.h"
 
 namespace lacerta {
@@ -64,7 +64,7 @@ void WriteObj(const AttributedMesh& mesh, const std::string& path) {
 Status ReportStream(const AttributedSurface& input, uint32_t base, int levels, const ErrorTargets& targets) {
   const double start = Seconds();
   LACERTA_ASSIGN_OR_RETURN(const AttributedCandidate candidate, AttributedCandidate::Create(input, base, levels));
-  LACERTA_ASSIGN_OR_RETURN(const AttributedTrial trial, candidate.Meet(targets, 8, 50'000));
+  LACERTA_ASSIGN_OR_RETURN(const AttributedTrial trial, candidate.Meet(targets, MeetOptions()));
   size_t base_bytes = 0;
   for (const Bytes& bytes : trial.stream.bases) base_bytes += bytes.size();
   std::printf("  stream of %zu bytes: base %zu", trial.stream.size(), base_bytes);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "lacerta/surface_distance.h"
-#include "remesh/level_attributes.h"
+#include "remesh/level_wedges.h"
 #include "remesh/simplify_to_errors.h"
 #include "shapes/attributed_shapes.h"
 #include "shapes/shapes.h"
