@@ -57,8 +57,18 @@ class BaseWalk {
   bool Visit(int rung) {
     visited_[rung] = true;
     const StatusOr<AttributedTrial> trial = Meet(static_cast<uint32_t>(std::lround(coarsest_ * std::pow(tries_.size_ratio, rung))));
-    if (!trial.ok()) reason_ = trial.status();
-    if (!trial.ok() || trial.value().ratio > 1 || trial.value().stream.size() >= MostBytes()) return false;
+    if (!trial.ok()) {
+      reason_ = trial.status();
+      return false;
+    }
+    if (trial.value().ratio > 1) {
+      reason_ = Unsupported("no precision leads to the targets");
+      return false;
+    }
+    if (trial.value().stream.size() >= MostBytes()) {
+      reason_ = Unsupported(std::to_string(trial.value().stream.size()) + " bytes would be needed");
+      return false;
+    }
     best_ = trial.value();
     return true;
   }
@@ -68,7 +78,7 @@ class BaseWalk {
   // The smallest stream with a base of that size; as many levels as bring it to the size of the input, or one more.
   StatusOr<AttributedTrial> Meet(uint32_t num_base_vertices) const {
     const double num_faces = static_cast<double>(input_.parts.refined.surface.triangles.size());
-    constexpr double kMostFaces = 6;  // as a multiple of the input's
+    constexpr double kMostFaces = 8;  // as a multiple of the input's
     int levels = 1;
     double finest = 8.0 * num_base_vertices;
     for (; finest < num_faces; finest *= 4) ++levels;
