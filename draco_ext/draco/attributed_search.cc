@@ -41,7 +41,7 @@ class BaseWalk {
   StatusOr<AttributedTrial> Smallest() {
     const double psnr = Psnr(targets_.distance, input_.meter.diagonal());
     int first = std::clamp(RungOf(TypicalBase(psnr)), 0, last_);
-    while (first < last_ && !Visit(first)) ++first;
+    while (first <= last_ && !Visit(first)) ++first;
     for (int r = first + 1; r <= last_ && Visit(r); ++r) {
     }
     for (int r = first - 1; r >= 0 && visited_.count(r) == 0 && Visit(r); --r) {
