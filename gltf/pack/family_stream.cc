@@ -58,9 +58,9 @@ class BaseSearch {
     const StatusOr<AttributedCandidate> candidate =
         AttributedCandidate::Create(input_, static_cast<uint32_t>(vertices), levels);
     if (!candidate.ok()) return std::nullopt;
-    const StatusOr<bool> can_meet = candidate.value().CanMeet(targets_);
-    if (!can_meet.ok() || !can_meet.value()) return std::nullopt;
-    StatusOr<AttributedTrial> trial = candidate.value().Meet(targets_, kTries, kSamples);
+    const bool can_meet = candidate.value().CanMeet(targets_);
+    if (!can_meet) return std::nullopt;
+    StatusOr<AttributedTrial> trial = candidate.value().Meet(targets_, {kTries, 3, kSamples});
     if (!trial.ok() || trial.value().ratio > 1.0) return std::nullopt;
     return std::move(trial).value();
   }
