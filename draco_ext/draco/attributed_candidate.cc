@@ -1,207 +1,14 @@
 #include "draco/attributed_candidate.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "draco/candidate_search.h"
+#include "draco/precision_search.h"
 #include "remesh/level_wedges.h"
 
 namespace lacerta {
 namespace {
 
 constexpr uint64_t kRoughSamples = 20'000;
-
-double Square(double x) { return x * x; }
-
-// What errors asked for an attribute led to so far: found ones jump where another prediction or number of levels comes to be the cheapest.
-struct ErrorLimits {
-  double met = 0, missed = std::numeric_limits<double>::infinity();
-
-  // The next error to ask for, given the last one, what it led to, and the one that seems right.
-  double Between(double last, double next, bool is_met) {
-    constexpr double kNoGap = 1.03;
-    (is_met ? met : missed) = last;
-    if (met >= missed) (is_met ? missed : met) = is_met ? std::numeric_limits<double>::infinity() : 0;  // of other positions
-    if (is_met && missed < kNoGap * met) return last;
-    if (next > met && next < missed) return next;
-    return next >= missed && met > 0 ? std::sqrt(met * missed) : next >= missed ? missed / kNoGap : next;
-  }
-};
-
-// The precisions of one candidate, corrected from attempt to attempt.
-class PrecisionSearch {
- public:
-  PrecisionSearch(const AttributedNormalMesh& mesh, const SurfaceErrors& remesh, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
-                  const MeetOptions& options)
-      : mesh_(mesh), remesh_(remesh), meter_(meter), targets_(targets), options_(options) {
-    limits_.resize(mesh.attributes.size());
-    precision_.lambda = UsualLambda(Psnr(targets.distance, meter.diagonal()), meter.diagonal());
-    for (size_t a = 0; a < mesh.attributes.size(); ++a) {
-      precision_.errors.push_back(std::sqrt(Allowed(remesh.attributes[a].rms_99, targets.attributes[a])) / UnitOf(a));
-    }
-  }
-
-  // Until the targets are met by few samples, with little left of them.
-  Status FirstTries() {
-    for (int i = 0; i < options_.first_tries; ++i) {
-      LACERTA_RETURN_IF_ERROR(Try(RoughSamples()));
-      constexpr double kBelow = 0.8;
-      const AttributedStreamOptions before = precision_;
-      if (SlidesTooFar()) most_lambda_ = std::min(most_lambda_, kBelow * before.lambda);
-      CorrectErrors(CorrectLambda());
-      if (precision_.lambda == before.lambda && precision_.errors == before.errors) break;
-    }
-    return Status();
-  }
-
-  // Whether more precise positions make more of room for attributes than they cost.
-  Status FinerTries() {
-    if (best_->ratio > 1) return Status();
-    constexpr double kStep = 1.6;  // between slopes, 2 dB
-    constexpr double kHopeless = 1.02;
-    precision_ = best_precision_;
-    last_ = *best_;
-    for (int i = 0; i < options_.finer_tries && Slides(); ++i) {
-      CorrectErrors(precision_.lambda / kStep);
-      const size_t least = best_->stream.size();
-      LACERTA_RETURN_IF_ERROR(Try(RoughSamples()));
-      if (static_cast<double>(last_.stream.size()) > kHopeless * static_cast<double>(least)) break;
-    }
-    return Status();
-  }
-
-  // Few samples may have been too kind.
-  Status Confirm() {
-    constexpr int kTries = 4;
-    precision_ = best_precision_;
-    last_ = std::move(*best_);
-    best_.reset();
-    LACERTA_RETURN_IF_ERROR(Measure(options_.num_samples));
-    for (int i = 0; i < kTries && best_->ratio > 1; ++i) {
-      CorrectErrors(CorrectLambda());
-      LACERTA_RETURN_IF_ERROR(Try(options_.num_samples));
-    }
-    return Status();
-  }
-
-  AttributedTrial Best() { return std::move(*best_); }
-
- private:
-  static constexpr double kAim = 0.98;  // of the targets
-
-  // What the remesh leaves to quantization, squared. Errors add up as squares.
-  static double Allowed(double remesh, double target) { return Square(kAim * target) - Square(std::min(remesh, 0.93 * target)); }
-
-  // What of the present error, squared, is not the remesh's.
-  static double Added(double found, double remesh, double target) {
-    return std::max(Square(found) - Square(std::min(remesh, 0.93 * target)), 0.01 * Square(target));
-  }
-
-  // Of errors in SurfaceErrors, per unit of those that the stream has.
-  double UnitOf(size_t a) const { return mesh_.attributes[a].kind == AttributeKind::kTextureCoordinates ? meter_.texture_size() : 1.0; }
-
-  // What sliding positions add to the error of an attribute, squared: what neither remesh nor residuals are to blame for.
-  double SlideOf(size_t a) const {
-    const double added = Added(last_.errors.attributes[a].rms_99, remesh_.attributes[a].rms_99, targets_.attributes[a]);
-    return std::max(added - Square(last_.stream.errors[a] * UnitOf(a)), 0.0);
-  }
-
-  bool Slides() const {
-    constexpr double kLeastShare = 0.15;
-    for (size_t a = 0; a < precision_.errors.size(); ++a) {
-      if (SlideShare(a) > kLeastShare) return true;
-    }
-    return false;
-  }
-
-  // Close enough: every change of one precision makes another stream, whose other errors jump a little.
-  static bool IsNear(double found, double target) { return found <= target && found > 0.95 * target; }
-
-  static constexpr double kMostSlide = 0.5;  // of what an attribute may be off, squared
-
-  double SlideShare(size_t a) const { return SlideOf(a) / Allowed(remesh_.attributes[a].rms_99, targets_.attributes[a]); }
-
-  bool SlidesTooFar() const {
-    for (size_t a = 0; a < precision_.errors.size(); ++a) {
-      if (SlideShare(a) > kMostSlide) return true;
-    }
-    return false;
-  }
-
-  // Coarse or fine enough for the distance, and for positions not to slide too far.
-  double CorrectLambda() const {
-    constexpr double kOtherTurned = 0.92;  // which triangles turn is chance, mostly
-    double change = IsNear(last_.errors.distance, targets_.distance)
-                        ? 1
-                        : Allowed(remesh_.distance, targets_.distance) / Added(last_.errors.distance, remesh_.distance, targets_.distance);
-    if (last_.errors.turned > targets_.turned) change = std::min(change, kOtherTurned);
-    for (size_t a = 0; a < precision_.errors.size(); ++a) {
-      if (SlideShare(a) > kMostSlide) change = std::min(change, kMostSlide / SlideShare(a));
-    }
-    return std::min(precision_.lambda * std::clamp(change, 0.05, 20.0), most_lambda_);
-  }
-
-  // To meet the targets at another lambda, whose squared errors go with it.
-  void CorrectErrors(double lambda) {
-    for (size_t a = 0; a < precision_.errors.size(); ++a) {
-      const double remesh = remesh_.attributes[a].rms_99, target = targets_.attributes[a], found = last_.errors.attributes[a].rms_99;
-      const double slide = SlideOf(a), more_slide = slide * (lambda / precision_.lambda - 1);
-      if (IsNear(std::sqrt(std::max(Square(found) + more_slide, 0.0)), target)) continue;
-      if (found <= target && last_.stream.residual_bytes[a] == 0) continue;
-      const double own = std::max(Added(found, remesh, target) - slide, 0.01 * Square(target));
-      const double left = Allowed(remesh, target) - slide - more_slide;
-      precision_.errors[a] = limits_[a].Between(precision_.errors[a], precision_.errors[a] * std::sqrt(std::clamp(left / own, 0.1, 10.0)), found <= target);
-    }
-    precision_.lambda = lambda;
-  }
-
-  uint64_t RoughSamples() const {
-    constexpr uint64_t kShare = 4;
-    return std::max<uint64_t>(options_.num_samples / kShare, 1);
-  }
-
-  Status Try(uint64_t num_samples) {
-    LACERTA_ASSIGN_OR_RETURN(last_.stream, EncodeAttributedStream(mesh_, precision_));
-    return Measure(num_samples);
-  }
-
-  // Whether it is better than the best; fails where it shows that most_bytes are not enough.
-  Status Measure(uint64_t num_samples) {
-    LACERTA_ASSIGN_OR_RETURN(last_.errors, meter_.Measure(FinestLevel(last_.stream.decoded), num_samples));
-    last_.ratio = WorstRatio(last_.errors, targets_);
-    const auto is_better = [&](const AttributedTrial& other) {
-      if (last_.ratio <= 1 && other.ratio <= 1) return last_.stream.size() < other.stream.size();
-      return last_.ratio < other.ratio;
-    };
-    if (!best_ || is_better(*best_)) {
-      best_ = last_;
-      best_precision_ = precision_;
-    }
-    if (best_->ratio <= 1) return Status();
-    // Bytes go about as one over the errors; so the one farthest within its target bounds what can be saved.
-    double least = last_.errors.distance / targets_.distance;
-    for (size_t a = 0; a < precision_.errors.size(); ++a) least = std::min(least, last_.errors.attributes[a].rms_99 / targets_.attributes[a]);
-    const double needed = static_cast<double>(last_.stream.size()) * std::min(least, 1.0);
-    if (needed < static_cast<double>(options_.most_bytes)) return Status();
-    return Unsupported("about " + std::to_string(std::lround(needed)) + " bytes or more would be needed");
-  }
-
-  const AttributedNormalMesh& mesh_;
-  const SurfaceErrors& remesh_;
-  const SurfaceErrorMeter& meter_;
-  const ErrorTargets& targets_;
-  const MeetOptions& options_;
-  AttributedStreamOptions precision_, best_precision_;
-  std::vector<ErrorLimits> limits_;
-  double most_lambda_ = std::numeric_limits<double>::infinity();  // beyond, positions slide too far
-  AttributedTrial last_;
-  std::optional<AttributedTrial> best_;
-};
 
 }  // namespace
 
@@ -223,12 +30,7 @@ bool AttributedCandidate::CanMeet(const ErrorTargets& targets) const {
 }
 
 StatusOr<AttributedTrial> AttributedCandidate::Meet(const ErrorTargets& targets, const MeetOptions& options) const {
-  if (options.first_tries < 1) return InvalidArgument("no attempt was allowed");
-  PrecisionSearch search(mesh_, errors_, input_.meter, targets, options);
-  LACERTA_RETURN_IF_ERROR(search.FirstTries());
-  LACERTA_RETURN_IF_ERROR(search.FinerTries());
-  LACERTA_RETURN_IF_ERROR(search.Confirm());
-  return search.Best();
+  return SearchPrecisions(mesh_, errors_, input_.meter, targets, options);
 }
 
 }  // namespace lacerta

@@ -29,13 +29,14 @@ struct AttributedTrial {
   AttributedStream stream;
   SurfaceErrors errors;  // of the finest level as decoded, against the original
   double ratio = 0;      // WorstRatio: the targets are met where it is at most 1
+  double least_bytes = 0;  // about what would do where errors are below their targets
 };
 
 struct MeetOptions {
   int first_tries = 6;   // until the targets are met, > 0
   int finer_tries = 4;   // with more precise positions than those need
   uint64_t num_samples = 50'000;  // of the measure that the stream is held to; the search takes a quarter
-  size_t most_bytes = std::numeric_limits<size_t>::max();  // given up where the stream seems to need as many or more
+  size_t most_bytes = std::numeric_limits<size_t>::max();  // no more attempts where the stream seems to need as many or more
 };
 
 class AttributedCandidate {
@@ -53,7 +54,7 @@ class AttributedCandidate {
 
   // The smallest stream found that meets the targets; where none does, the nearest. Precisions of positions and of every attribute are corrected by the
   // errors of the attempt before. Attributes are off by their own residuals and by how far positions slide below them, so that more precise
-  // positions may save bytes: they are tried for as long as they do. kUnsupported where most_bytes are not enough.
+  // positions may save bytes: they are tried for as long as they do.
   StatusOr<AttributedTrial> Meet(const ErrorTargets& targets, const MeetOptions& options) const;
 
  private:

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -27,6 +28,8 @@ SearchTries TriesOf(Effort effort) {
   return {1.6, 6, 3};
 }
 
+enum class Found { kSmaller, kTooLarge, kTooFar };
+
 // A ladder of base sizes, from the coarsest that seams allow.
 class BaseWalk {
  public:
@@ -39,61 +42,75 @@ class BaseWalk {
   }
 
   StatusOr<AttributedTrial> Smallest() {
-    const double psnr = Psnr(targets_.distance, input_.meter.diagonal());
-    int first = std::clamp(RungOf(TypicalBase(psnr)), 0, last_);
-    while (first <= last_ && !Visit(first)) ++first;
-    for (int r = first + 1; r <= last_ && Visit(r); ++r) {
+    int first = std::clamp(RungOf(TypicalBase(Psnr(targets_.distance, input_.meter.diagonal()))), 0, last_);
+    while (Visit(first) == Found::kTooFar && first < last_ && may_get_nearer_) ++first;
+    const bool is_near = best_ || least_bytes_ < kHopeless * static_cast<double>(options_.most_bytes);
+    if (is_near) {
+      for (int r = first + 1; r <= last_ && Visit(r) == Found::kSmaller; ++r) {
+      }
+      for (int r = first - 1; r >= 0 && visited_.count(r) == 0 && Visit(r) == Found::kSmaller; --r) {
+      }
     }
-    for (int r = first - 1; r >= 0 && visited_.count(r) == 0 && Visit(r); --r) {
-    }
-    if (!best_) return reason_.ok() ? Unsupported("no base leads to the targets") : reason_;
+    if (!best_) return reason_;
     return std::move(*best_);
   }
 
  private:
+  static constexpr double kHopeless = 1.2;  // times too large: neighboring bases do not save so much
+
   int RungOf(double size) const { return static_cast<int>(std::lround(std::log(std::max(size, 1.0) / coarsest_) / std::log(tries_.size_ratio))); }
 
   // Whether the smallest stream so far has the base of this rung.
-  bool Visit(int rung) {
-    visited_[rung] = true;
-    const StatusOr<AttributedTrial> trial = Meet(static_cast<uint32_t>(std::lround(coarsest_ * std::pow(tries_.size_ratio, rung))));
+  Found Visit(int rung) {
+    visited_.insert(rung);
+    StatusOr<AttributedTrial> trial = Meet(static_cast<uint32_t>(std::lround(coarsest_ * std::pow(tries_.size_ratio, rung))));
     if (!trial.ok()) {
       reason_ = trial.status();
-      return false;
+      return Found::kTooFar;
+    }
+    const double bytes = std::max(trial.value().least_bytes, trial.value().ratio <= 1 ? static_cast<double>(trial.value().stream.size()) : 0.0);
+    if (bytes >= static_cast<double>(MostBytes())) {
+      least_bytes_ = std::min(least_bytes_, bytes);
+      reason_ = Unsupported("about " + std::to_string(std::lround(bytes)) + " bytes would be needed");
+      return Found::kTooLarge;
     }
     if (trial.value().ratio > 1) {
       reason_ = Unsupported("no precision leads to the targets");
-      return false;
+      return Found::kTooFar;
     }
-    if (trial.value().stream.size() >= MostBytes()) {
-      reason_ = Unsupported(std::to_string(trial.value().stream.size()) + " bytes would be needed");
-      return false;
-    }
-    best_ = trial.value();
-    return true;
+    best_ = std::move(trial).value();
+    return Found::kSmaller;
   }
 
   size_t MostBytes() const { return best_ ? std::min(options_.most_bytes, best_->stream.size()) : options_.most_bytes; }
 
-  // The smallest stream with a base of that size; as many levels as bring it to the size of the input, or one more.
-  StatusOr<AttributedTrial> Meet(uint32_t num_base_vertices) const {
+  // The smallest stream with a base of that size, and as few levels as lead to the targets.
+  StatusOr<AttributedTrial> Meet(uint32_t num_base_vertices) {
     const double num_faces = static_cast<double>(input_.parts.refined.surface.triangles.size());
-    constexpr double kMostFaces = 8;  // as a multiple of the input's
+    constexpr double kFewestFaces = 0.4, kMostFaces = 8;  // of the finest level, as multiples of the input's
     int levels = 1;
     double finest = 8.0 * num_base_vertices;
-    for (; finest < num_faces; finest *= 4) ++levels;
+    for (; finest < kFewestFaces * num_faces; finest *= 4) ++levels;
     std::optional<SurfaceErrors> nearest;
-    for (; levels == 1 || finest <= kMostFaces * num_faces; ++levels, finest *= 4) {
+    for (; !nearest || finest <= kMostFaces * num_faces; ++levels, finest *= 4) {
       LACERTA_ASSIGN_OR_RETURN(const AttributedCandidate candidate, AttributedCandidate::Create(input_, num_base_vertices, levels));
+      const double before = nearest ? WorstRatio(*nearest, targets_) : std::numeric_limits<double>::infinity();
       nearest = candidate.errors();
-      if (!candidate.CanMeet(targets_)) continue;
-      MeetOptions meet;
-      meet.first_tries = tries_.first;
-      meet.finer_tries = tries_.finer;
-      meet.num_samples = options_.num_samples;
-      meet.most_bytes = MostBytes();
-      return candidate.Meet(targets_, meet);
+      const double ratio = WorstRatio(*nearest, targets_);
+      if (candidate.CanMeet(targets_)) {
+        MeetOptions meet;
+        meet.first_tries = tries_.first;
+        meet.finer_tries = tries_.finer;
+        meet.num_samples = options_.num_samples;
+        meet.most_bytes = MostBytes();
+        return candidate.Meet(targets_, meet);
+      }
+      constexpr double kStuck = 0.9;  // of the error before: more levels do not help
+      if (ratio > kStuck * before) break;
     }
+    // Larger bases change what vertices stand for, but not by orders of magnitude.
+    constexpr double kFar = 3;
+    may_get_nearer_ = WorstRatio(*nearest, targets_) < kFar;
     return Unsupported(WhatIsFar(*nearest));
   }
 
@@ -119,10 +136,15 @@ class BaseWalk {
   const SearchTries tries_;
   double coarsest_;
   int last_;
-  std::map<int, bool> visited_;
+  std::set<int> visited_;
   Status reason_;  // why the last rung gave nothing
+  bool may_get_nearer_ = true;  // where the last rung was too far
+  double least_bytes_ = std::numeric_limits<double>::infinity();  // of streams that were too large
   std::optional<AttributedTrial> best_;
 };
+
+// Stock Draco takes more for a triangle at any precision worth naming: its corners' integers, half a vertex each, and the connectivity.
+size_t LeastBytesOfBase(size_t num_triangles, const AttributedMesh& mesh) { return num_triangles * (1 + mesh.attributes.size()); }
 
 }  // namespace
 
@@ -131,7 +153,10 @@ StatusOr<AttributedTrial> SmallestAttributedStream(const AttributedMesh& mesh, c
   if (targets.attributes.size() != mesh.attributes.size()) return InvalidArgument("there is not one target for each attribute");
   LACERTA_ASSIGN_OR_RETURN(AttributedParts parts, SplitAttributedSurface(mesh));
   LACERTA_ASSIGN_OR_RETURN(const CollapseHistory history, DecimateAttributed(parts));
+  const size_t coarsest = history.FacesAt(history.num_collapses()).size();
+  if (LeastBytesOfBase(coarsest, mesh) >= options.most_bytes) return Unsupported("its seams and creases leave no coarse base");
   LACERTA_RETURN_IF_ERROR(SimplifyStill(targets, meter.texture_size(), &parts));
+  if (LeastBytesOfBase(coarsest + parts.still.surface.triangles.size(), mesh) >= options.most_bytes) return Unsupported("most of it are small parts");
   const InputSurface surface(parts.refined.surface, parts.topology);
   const AttributedSurface input{mesh, meter, parts, surface, history};
   return BaseWalk(input, targets, options).Smallest();

@@ -21,8 +21,8 @@ struct AttributedSearchOptions {
   uint64_t num_samples = 100'000;  // of the measure that the stream is held to
 };
 
-// Walks over base sizes, from a usual one for as long as streams get smaller, and at each over precisions. meter: of `mesh`, with the texture size that
-// texels in `targets` refer to. kUnsupported, with the reason, where the surface cannot be remeshed with its seams, where no base leads to
+// Walks over base sizes, from a usual one for as long as streams get smaller, and at each over precisions; ends early where most_bytes
+// seem out of reach. meter: of `mesh`, with the texture size that texels in `targets` refer to. kUnsupported, with the reason, where the surface cannot be remeshed with its seams, where no base leads to
 // the targets, and where most_bytes are not enough; all that is returned meets the targets, `turned` among them where it is bounded.
 StatusOr<AttributedTrial> SmallestAttributedStream(const AttributedMesh& mesh, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
                                                    const AttributedSearchOptions& options = {});

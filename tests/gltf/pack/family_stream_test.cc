@@ -169,12 +169,12 @@ TEST(FamilyStream, NoStreamWithoutAReason) {
   const VertexSoup box = shapes::TexturedBox(4);  // all seams
   Primitive primitive{box.positions.size(), box.triangles, {{"POSITION", MakeFloatAccessor(box.positions)}}};
   const FamilyMeter meter({&primitive}, 1e-3, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
-  const auto small = StreamFamily(meter, {});
+  const auto small = StreamFamily(meter, Effort::kNormal);
   EXPECT_EQ(small.status().code(), StatusCode::kUnsupported);
   EXPECT_FALSE(small.status().message().empty());
   primitive.attributes.push_back({"_MINE", primitive.attributes[0].data});
   const FamilyMeter with_other({&primitive}, 1e-3, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
-  EXPECT_THAT(StreamFamily(with_other, {}).status().message(), HasSubstr("interpolated"));
+  EXPECT_THAT(StreamFamily(with_other, Effort::kNormal).status().message(), HasSubstr("interpolated"));
 }
 
 }  // namespace
