@@ -30,7 +30,7 @@ bool AttributedCandidate::CanMeet(const ErrorTargets& targets) const {
 }
 
 StatusOr<AttributedTrial> AttributedCandidate::Meet(const ErrorTargets& targets, const MeetOptions& options) const {
-  return SearchPrecisions(mesh_, errors_, input_.meter, targets, options);
+  return SearchPrecisions(mesh_, errors_, input_, targets, options);
 }
 
 }  // namespace lacerta

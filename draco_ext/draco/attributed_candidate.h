@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "draco/attributed_stream.h"
+#include "geometry/group_surface.h"
 #include "lacerta/attributed_mesh.h"
 #include "lacerta/status.h"
 #include "remesh/attributed_remesh.h"
@@ -18,7 +19,7 @@ namespace lacerta {
 
 // A surface with attributes, prepared once for all candidates. References must outlive the candidates.
 struct AttributedSurface {
-  const AttributedMesh& original;
+  const GroupSurface& original;
   const SurfaceErrorMeter& meter;  // of the original
   const AttributedParts& parts;
   const InputSurface& surface;     // of parts.refined.surface

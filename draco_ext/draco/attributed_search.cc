@@ -124,7 +124,7 @@ class BaseWalk {
     };
     consider(errors.turned / targets_.turned, "turned triangles");
     for (size_t a = 0; a < errors.attributes.size(); ++a) {
-      consider(errors.attributes[a].rms_99 / targets_.attributes[a], input_.original.attributes[a].name);
+      consider(errors.attributes[a].rms_99 / targets_.attributes[a], input_.original.mesh().attributes[a].name);
     }
     const std::string times = std::to_string(worst);
     return "no base leads to the targets: the last remesh has " + times.substr(0, times.find('.') + 3) + " times the error of " + what + " allowed";
@@ -158,7 +158,8 @@ StatusOr<AttributedTrial> SmallestAttributedStream(const AttributedMesh& mesh, c
   LACERTA_RETURN_IF_ERROR(SimplifyStill(targets, meter.texture_size(), &parts));
   if (LeastBytesOfBase(coarsest + parts.still.surface.triangles.size(), mesh) >= options.most_bytes) return Unsupported("most of it are small parts");
   const InputSurface surface(parts.refined.surface, parts.topology);
-  const AttributedSurface input{mesh, meter, parts, surface, history};
+  const GroupSurface original(mesh);
+  const AttributedSurface input{original, meter, parts, surface, history};
   return BaseWalk(input, targets, options).Smallest();
 }
 

@@ -3,6 +3,7 @@
 #define LACERTA_DRACO_ATTRIBUTED_STREAM_H_
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct AttributedStreamOptions {
   // For each attribute the error to stay within, root mean square over the 99 % of the surface where it is least, beside what positions do: in the attribute's own units,
   // of normals and tangents in degrees; > 0.
   std::vector<double> errors;
+  // Called with the surface as decoded and the values wanted there: sets those that fit it best, for vertices slide where the
+  // shape does not show it. Empty: they stay.
+  std::function<void(AttributedSemiRegularMesh*)> refit = {};
 };
 
 struct AttributedStream {

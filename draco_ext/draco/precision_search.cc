@@ -33,11 +33,12 @@ struct ErrorLimits {
 // The precisions of one candidate, corrected from attempt to attempt.
 class PrecisionSearch {
  public:
-  PrecisionSearch(const AttributedNormalMesh& mesh, const SurfaceErrors& remesh, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
+  PrecisionSearch(const AttributedNormalMesh& mesh, const SurfaceErrors& remesh, const AttributedSurface& input, const ErrorTargets& targets,
                   const MeetOptions& options)
-      : mesh_(mesh), remesh_(remesh), meter_(meter), targets_(targets), options_(options) {
+      : mesh_(mesh), remesh_(remesh), meter_(input.meter), targets_(targets), options_(options) {
     limits_.resize(mesh.attributes.size());
-    precision_.lambda = UsualLambda(Psnr(targets.distance, meter.diagonal()), meter.diagonal());
+    precision_.lambda = UsualLambda(Psnr(targets.distance, meter_.diagonal()), meter_.diagonal());
+    precision_.refit = [&original = input.original](AttributedSemiRegularMesh* decoded) { FitLevelAttributes(original, decoded); };
     for (size_t a = 0; a < mesh.attributes.size(); ++a) {
       precision_.errors.push_back(std::sqrt(Allowed(remesh.attributes[a].rms_99, targets.attributes[a])) / UnitOf(a));
     }
@@ -50,10 +51,11 @@ class PrecisionSearch {
       LACERTA_RETURN_IF_ERROR(Try(RoughSamples()));
       if (IsHopeless() || (was_met && last_.stream.size() > best_->stream.size())) break;
       constexpr double kBelow = 0.8;
-      const AttributedStreamOptions before = precision_;
-      if (SlidesTooFar()) most_lambda_ = std::min(most_lambda_, kBelow * before.lambda);
+      const double last_lambda = precision_.lambda;
+      const std::vector<double> last_errors = precision_.errors;
+      if (SlidesTooFar()) most_lambda_ = std::min(most_lambda_, kBelow * last_lambda);
       CorrectErrors(CorrectLambda());
-      if (precision_.lambda == before.lambda && precision_.errors == before.errors) break;
+      if (precision_.lambda == last_lambda && precision_.errors == last_errors) break;
     }
     return Status();
   }
@@ -221,10 +223,10 @@ class PrecisionSearch {
 
 }  // namespace
 
-StatusOr<AttributedTrial> SearchPrecisions(const AttributedNormalMesh& mesh, const SurfaceErrors& remesh, const SurfaceErrorMeter& meter,
+StatusOr<AttributedTrial> SearchPrecisions(const AttributedNormalMesh& mesh, const SurfaceErrors& remesh, const AttributedSurface& input,
                                            const ErrorTargets& targets, const MeetOptions& options) {
   if (options.first_tries < 1) return InvalidArgument("no attempt was allowed");
-  PrecisionSearch search(mesh, remesh, meter, targets, options);
+  PrecisionSearch search(mesh, remesh, input, targets, options);
   LACERTA_RETURN_IF_ERROR(search.FirstTries());
   LACERTA_RETURN_IF_ERROR(search.FinerTries());
   LACERTA_RETURN_IF_ERROR(search.Confirm());

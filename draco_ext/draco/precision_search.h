@@ -9,8 +9,8 @@
 
 namespace lacerta {
 
-// remesh: errors of `mesh` before anything is quantized. Else as AttributedCandidate::Meet.
-StatusOr<AttributedTrial> SearchPrecisions(const AttributedNormalMesh& mesh, const SurfaceErrors& remesh, const SurfaceErrorMeter& meter,
+// input: what `mesh` comes from. remesh: errors of `mesh` before anything is quantized. Else as AttributedCandidate::Meet.
+StatusOr<AttributedTrial> SearchPrecisions(const AttributedNormalMesh& mesh, const SurfaceErrors& remesh, const AttributedSurface& input,
                                            const ErrorTargets& targets, const MeetOptions& options);
 
 }  // namespace lacerta

@@ -122,7 +122,7 @@ Status Report(const NamedSurface& named, const Wanted& wanted) {
   AttributedSemiRegularMesh mesh = remesh.Semiregular();
   constexpr uint64_t kSamples = 100'000;
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors sampled, meter.Measure(FinestLevel(mesh), kSamples));
-  FitLevelAttributes(named.mesh, &mesh);
+  FitLevelAttributes(GroupSurface(named.mesh), &mesh);
   const double seconds = Seconds() - start;
   const AttributedMesh finest = FinestLevel(mesh);
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, meter.Measure(finest, kSamples));

@@ -15,7 +15,8 @@ TEST(AttributedCandidateTest, StreamsMeetTheirTargetsAndLeaveLittleOfThem) {
   const AttributedParts parts = SplitAttributedSurface(mesh).value();
   const CollapseHistory history = DecimateAttributed(parts).value();
   const InputSurface surface(parts.refined.surface, parts.topology);
-  const AttributedCandidate candidate = AttributedCandidate::Create({mesh, meter, parts, surface, history}, 60, 4).value();
+  const GroupSurface original(mesh);
+  const AttributedCandidate candidate = AttributedCandidate::Create({original, meter, parts, surface, history}, 60, 4).value();
   size_t bytes = 0;
   for (const double psnr : {60.0, 66.0, 72.0, 78.0}) {
     SCOPED_TRACE(psnr);
