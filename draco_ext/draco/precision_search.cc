@@ -143,7 +143,8 @@ class PrecisionSearch {
                         : Allowed(remesh_.distance, targets_.distance) / Added(last_.errors.distance, remesh_.distance, targets_.distance);
     if (last_.errors.turned > targets_.turned) change = std::min(change, std::clamp(targets_.turned / last_.errors.turned, kLeastTurned, kOtherTurned));
     for (size_t a = 0; a < precision_.errors.size(); ++a) {
-      if (SlideShare(a) > kMostSlide) change = std::min(change, kMostSlide / SlideShare(a));
+      constexpr double kMuch = 0.2;
+      if (SlideShare(a) > kMuch) change = std::min(change, std::min(kMostSlide / SlideShare(a), 1.0));
     }
     return std::min(precision_.lambda * std::clamp(change, 0.05, 20.0), most_lambda_);
   }
