@@ -30,6 +30,8 @@ struct AttributedTrial {
   AttributedStream stream;
   SurfaceErrors errors;  // of the finest level as decoded, against the original
   double ratio = 0;      // WorstRatio: the targets are met where it is at most 1
+  double remesh_distance = 0;  // of the remesh before anything is quantized, as errors.distance
+  int measurements = 0;        // of errors, that it took
   double least_bytes = 0;  // about what would do where errors are below their targets
 };
 

@@ -91,7 +91,11 @@ class PrecisionSearch {
     return Status();
   }
 
-  AttributedTrial Best() { return std::move(*best_); }
+  AttributedTrial Best() {
+    best_->remesh_distance = remesh_.distance;
+    best_->measurements = measurements_;
+    return std::move(*best_);
+  }
 
  private:
   static constexpr double kAim = 0.98;  // of the targets
@@ -176,6 +180,7 @@ class PrecisionSearch {
   // Keeps it where it is better than the best.
   Status Measure(uint64_t num_samples) {
     LACERTA_ASSIGN_OR_RETURN(last_.errors, meter_.Measure(FinestLevel(last_.stream.decoded), num_samples));
+    ++measurements_;
     last_.ratio = WorstRatio(last_.errors, targets_);
     last_.least_bytes = LeastBytes();
     const auto is_better = [&](const AttributedTrial& other) {
@@ -219,6 +224,7 @@ class PrecisionSearch {
   std::vector<ErrorLimits> limits_;
   double most_lambda_ = std::numeric_limits<double>::infinity();  // beyond, positions slide too far
   AttributedTrial last_;
+  int measurements_ = 0;
   std::optional<AttributedTrial> best_;
 };
 

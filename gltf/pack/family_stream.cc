@@ -7,6 +7,7 @@
 
 #include "draco/attributed_search.h"
 #include "lacerta/attributed_base.h"
+#include "lacerta/surface_distance.h"
 
 namespace lacerta {
 namespace {
@@ -54,6 +55,24 @@ Status DescribeLevels(const AttributedStream& stream, const SurfaceErrorMeter& m
   return Status();
 }
 
+EncodeReport ReportOf(const AttributedTrial& trial, const FamilyStream& stream, const FamilyMeter& family) {
+  EncodeReport report;
+  for (const Primitive* primitive : family.primitives()) report.input_vertices += primitive->num_vertices;
+  report.input_triangles = family.original().surface.triangles.size();
+  report.diagonal = family.meter().diagonal();
+  report.progressive = true;
+  report.remesh_psnr = Psnr(trial.remesh_distance, report.diagonal);
+  report.measurements = trial.measurements;
+  const ProgressiveStream& description = stream.description;
+  uint64_t bytes = 0;
+  for (size_t level = 0; level < description.errors.size(); ++level) {
+    bytes += stream.part_sizes[level];
+    report.levels.push_back({description.vertex_counts[level], description.triangle_counts[level], bytes,
+                             description.errors[level], Psnr(description.errors[level], report.diagonal)});
+  }
+  return report;
+}
+
 StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const SurfaceErrorMeter& meter, const FamilyMeter& family) {
   const AttributedStream& stream = trial.stream;
   FamilyStream result;
@@ -85,6 +104,7 @@ StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const Surfac
   result.part_sizes.push_back(result.bytes.size());
   result.part_sizes.insert(result.part_sizes.end(), stream.part_sizes.begin(), stream.part_sizes.end());
   result.bytes.insert(result.bytes.end(), stream.refinement.begin(), stream.refinement.end());
+  result.encode = ReportOf(trial, result, family);
   return result;
 }
 

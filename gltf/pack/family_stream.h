@@ -21,6 +21,7 @@ struct FamilyStream {
   Bytes bytes;                      // the base section, a stock Draco stream per group, then the refinement
   std::vector<uint64_t> part_sizes; // base section, then one part per level; they add up to the bytes
   ProgressiveStream description;
+  EncodeReport encode;
   struct Group {
     std::vector<DracoAttributeId> ids;
     Primitive base;  // what a stock decoder makes of its part of the base section

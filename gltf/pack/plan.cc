@@ -236,6 +236,7 @@ bool PlanStream(size_t family, const Context& context, const FamilyMeter& meter,
     report.storage = PrimitiveStorage::kProgressive;
     report.reason = "with its attributes in " + std::to_string(shared->part_sizes.size() - 1) + " levels";
     report.attributes = shared->reports[m];
+    report.encode = shared->encode;
     report.error = shared->description.errors.back();
     report.target_error = ErrorOf(context, family);
     // The refinement is that of all; the first carries it.

@@ -122,7 +122,8 @@ Status Report(const NamedSurface& named, const Wanted& wanted) {
   AttributedSemiRegularMesh mesh = remesh.Semiregular();
   constexpr uint64_t kSamples = 100'000;
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors sampled, meter.Measure(FinestLevel(mesh), kSamples));
-  FitLevelAttributes(GroupSurface(named.mesh), &mesh);
+  const GroupSurface original(named.mesh);
+  FitLevelAttributes(original, &mesh);
   const double seconds = Seconds() - start;
   const AttributedMesh finest = FinestLevel(mesh);
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, meter.Measure(finest, kSamples));
@@ -138,7 +139,7 @@ Status Report(const NamedSurface& named, const Wanted& wanted) {
   if (wanted.psnr > 0) {
     LACERTA_ASSIGN_OR_RETURN(const std::string bytes, PositionBytes(named.mesh, coded, remesh.surface, wanted.psnr));
     const ErrorTargets targets = TargetsFor(named.mesh, DistanceOfPsnr(wanted.psnr, meter.diagonal()), 1, 2);
-    LACERTA_RETURN_IF_ERROR(ReportStream({named.mesh, meter, parts, surface, history}, wanted.base, options.num_levels, targets));
+    LACERTA_RETURN_IF_ERROR(ReportStream({original, meter, parts, surface, history}, wanted.base, options.num_levels, targets));
     std::printf("  positions at %.1f dB: %s\n", wanted.psnr, bytes.c_str());
   }
   if (!wanted.obj.empty()) {
