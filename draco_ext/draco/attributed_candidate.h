@@ -3,10 +3,13 @@
 #ifndef LACERTA_DRACO_ATTRIBUTED_CANDIDATE_H_
 #define LACERTA_DRACO_ATTRIBUTED_CANDIDATE_H_
 
+#include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <limits>
+#include <utility>
 
 #include "draco/attributed_stream.h"
+#include "geometry/group_surface.h"
 #include "lacerta/attributed_mesh.h"
 #include "lacerta/status.h"
 #include "remesh/attributed_remesh.h"
@@ -16,7 +19,7 @@ namespace lacerta {
 
 // A surface with attributes, prepared once for all candidates. References must outlive the candidates.
 struct AttributedSurface {
-  const AttributedMesh& original;
+  const GroupSurface& original;
   const SurfaceErrorMeter& meter;  // of the original
   const AttributedParts& parts;
   const InputSurface& surface;     // of parts.refined.surface
@@ -27,6 +30,16 @@ struct AttributedTrial {
   AttributedStream stream;
   SurfaceErrors errors;  // of the finest level as decoded, against the original
   double ratio = 0;      // WorstRatio: the targets are met where it is at most 1
+  double remesh_distance = 0;  // of the remesh before anything is quantized, as errors.distance
+  int measurements = 0;        // of errors, that it took
+  double least_bytes = 0;  // about what would do where errors are below their targets
+};
+
+struct MeetOptions {
+  int first_tries = 6;   // until the targets are met, > 0
+  int finer_tries = 4;   // with more precise positions than those need
+  uint64_t num_samples = 50'000;  // of the measure that the stream is held to; the search takes a quarter
+  size_t most_bytes = std::numeric_limits<size_t>::max();  // no more attempts where the stream seems to need as many or more
 };
 
 class AttributedCandidate {
@@ -36,19 +49,24 @@ class AttributedCandidate {
 
   const AttributedNormalMesh& mesh() const { return mesh_; }
 
-  // Whether the remesh itself, not quantized, leaves something of the targets to quantization.
-  StatusOr<bool> CanMeet(const ErrorTargets& targets) const;
+  // Of the remesh itself, not quantized.
+  const SurfaceErrors& errors() const { return errors_; }
 
-  // The fewest bytes found at which the stream meets the targets; where none did in `tries` attempts, each of which corrects the precision of
-  // positions and every attribute by the errors of the last one, the nearest. Errors depend on each other (a texture on how far positions
-  // slide), so a coarser target may take more bytes than a finer one: try that, too. num_samples: of the measure.
-  StatusOr<AttributedTrial> Meet(const ErrorTargets& targets, int tries, uint64_t num_samples) const;
+  // Whether the remesh leaves something of the targets to quantization.
+  bool CanMeet(const ErrorTargets& targets) const;
+
+  // The smallest stream found that meets the targets; where none does, the nearest. Precisions of positions and of every attribute are corrected by the
+  // errors of the attempt before. Attributes are off by their own residuals and by how far positions slide below them, so that more precise
+  // positions may save bytes: they are tried for as long as they do.
+  StatusOr<AttributedTrial> Meet(const ErrorTargets& targets, const MeetOptions& options) const;
 
  private:
-  AttributedCandidate(const AttributedSurface& input, AttributedNormalMesh mesh) : input_(input), mesh_(std::move(mesh)) {}
+  AttributedCandidate(const AttributedSurface& input, AttributedNormalMesh mesh, SurfaceErrors errors)
+      : input_(input), mesh_(std::move(mesh)), errors_(std::move(errors)) {}
 
   AttributedSurface input_;
   AttributedNormalMesh mesh_;
+  SurfaceErrors errors_;
 };
 
 }  // namespace lacerta

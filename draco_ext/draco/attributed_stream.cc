@@ -193,6 +193,13 @@ StatusOr<Reordered> Reorder(const AttributedNormalMesh& mesh, const GluedBase& g
   return result;
 }
 
+// values: as in Reordered, of the attributes of `decoded`, whose own are the base's.
+void Refit(const AttributedStreamOptions& options, AttributedSemiRegularMesh decoded, std::vector<std::vector<float>>* values) {
+  for (size_t a = 0; a < values->size(); ++a) decoded.attributes[a].values = std::move((*values)[a]);
+  options.refit(&decoded);
+  for (size_t a = 0; a < values->size(); ++a) (*values)[a] = std::move(decoded.attributes[a].values);
+}
+
 CodedSurface CodePositions(const SurfaceTarget& target, const BaseMesh& base, const AttributedStreamOptions& options) {
   const std::vector<double> scales = DetailScales(target);
   const int last = options.last_detailed > 0 ? std::min(options.last_detailed, target.num_levels()) : LastDetailedLevel(target, scales, options.lambda);
@@ -235,7 +242,7 @@ StatusOr<AttributedStream> EncodeAttributedStream(const AttributedNormalMesh& me
   LACERTA_ASSIGN_OR_RETURN(CodedAttributedBase coded_base, EncodeAttributedBase(given));
   for (FaceSource& f : coded_base.faces) f.face = by_group[f.face];
   LACERTA_ASSIGN_OR_RETURN(const GluedBase glued, GlueBase(coded_base.base));
-  LACERTA_ASSIGN_OR_RETURN(const Reordered reordered, Reorder(mesh, glued, coded_base.faces));
+  LACERTA_ASSIGN_OR_RETURN(Reordered reordered, Reorder(mesh, glued, coded_base.faces));
   const BaseTags& tags = reordered.surface.mesh.tags;
   LACERTA_ASSIGN_OR_RETURN(const std::vector<Topology> topologies, BuildTopologies(glued.mesh, reordered.surface.mesh.num_levels, tags));
 
@@ -245,6 +252,7 @@ StatusOr<AttributedStream> EncodeAttributedStream(const AttributedNormalMesh& me
   stream.decoded.surface = {glued.mesh.triangles, reordered.surface.mesh.num_base_vertices, target.num_levels(), Synthesize(target, coded), tags};
   stream.decoded.base_groups = glued.groups;
   stream.decoded.attributes = glued.attributes;
+  if (options.refit) Refit(options, stream.decoded, &reordered.values);
   WrittenAttributes written{BaseChecksum(coded_base.base), {}, {}};
   for (size_t a = 0; a < glued.attributes.size(); ++a) {
     const std::vector<Triangle> corners = WithoutStill(glued.attributes[a].base_corners, tags.still);

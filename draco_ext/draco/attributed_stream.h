@@ -3,6 +3,7 @@
 #define LACERTA_DRACO_ATTRIBUTED_STREAM_H_
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,12 @@ struct AttributedStreamOptions {
   double lambda = 0;       // squared model units per bit of positions, > 0: as in NormalMeshCandidate::Code
   int last_detailed = 0;   // for StepsForSlope; 0: LastDetailedLevel
   int passes = 3;
-  // For each attribute the error to stay within, root mean square over the surface, beside what positions do: in the attribute's own units,
+  // For each attribute the error to stay within, root mean square over the 99 % of the surface where it is least, beside what positions do: in the attribute's own units,
   // of normals and tangents in degrees; > 0.
   std::vector<double> errors;
+  // Called with the surface as decoded and the values wanted there: sets those that fit it best, for vertices slide where the
+  // shape does not show it. Empty: they stay.
+  std::function<void(AttributedSemiRegularMesh*)> refit = {};
 };
 
 struct AttributedStream {

@@ -5,11 +5,12 @@
 #include <utility>
 
 #include "geometry/bounding_box.h"
-#include "geometry/group_surface.h"
 #include "remesh/attribute_fit.h"
+#include "remesh/base_attributes.h"
 #include "remesh/base_parts.h"
 #include "remesh/decimate.h"
 #include "remesh/level_attributes.h"
+#include "remesh/level_wedges.h"
 #include "remesh/piercing.h"
 #include "remesh/surface_fit.h"
 
@@ -85,15 +86,14 @@ StatusOr<AttributedNormalMesh> RemeshAttributed(const AttributedParts& parts, co
   return result;
 }
 
-void FitLevelAttributes(const AttributedMesh& original, AttributedSemiRegularMesh* mesh) {
+void FitLevelAttributes(const GroupSurface& original, AttributedSemiRegularMesh* mesh) {
   AttributedMesh finest = FinestLevel(*mesh);
   std::vector<std::vector<Triangle>> corners;
   for (const MeshAttribute& attribute : finest.attributes) corners.push_back(attribute.corners);
   AttributeFitOptions options;
-  const BoundingBox box = BoundsOf(original.surface.positions);
+  const BoundingBox box = BoundsOf(original.mesh().surface.positions);
   options.diagonal = Norm(Vec3Cast<double>(box.high) - Vec3Cast<double>(box.low));
-  const GroupSurface surface(original);
-  FitAttributes(surface, options, &finest);
+  FitAttributes(original, options, &finest);
   for (size_t a = 0; a < corners.size(); ++a) {
     LevelAttribute& level = mesh->attributes[a];
     const MeshAttribute& fitted = finest.attributes[a];

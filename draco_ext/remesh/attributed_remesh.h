@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "geometry/group_surface.h"
 #include "lacerta/attributed_levels.h"
 #include "lacerta/remesh.h"
 #include "lacerta/status.h"
@@ -46,7 +47,7 @@ StatusOr<AttributedNormalMesh> RemeshAttributed(const AttributedParts& parts, co
                                                 const AttributedRemeshOptions& options);
 
 // Least squares of the values at all levels over the surface of the finest one (remesh/attribute_fit.h). parts: what `mesh` comes from.
-void FitLevelAttributes(const AttributedMesh& original, AttributedSemiRegularMesh* mesh);
+void FitLevelAttributes(const GroupSurface& original, AttributedSemiRegularMesh* mesh);
 
 }  // namespace lacerta
 

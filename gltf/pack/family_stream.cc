@@ -1,14 +1,13 @@
 #include "pack/family_stream.h"
 
 #include <algorithm>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
-#include "draco/attributed_candidate.h"
+#include "draco/attributed_search.h"
 #include "lacerta/attributed_base.h"
-#include "remesh/attributed_still.h"
+#include "lacerta/surface_distance.h"
 
 namespace lacerta {
 namespace {
@@ -24,59 +23,6 @@ StatusOr<AttributedMesh> PlainNames(AttributedMesh mesh) {
   }
   return mesh;
 }
-
-// Tries bases of `coarsest` vertices times powers of two: from one whose third level is as fine as the input downhill, by
-// bytes, to either side.
-class BaseSearch {
- public:
-  BaseSearch(const AttributedSurface& input, const ErrorTargets& targets, size_t coarsest, size_t most)
-      : input_(input), targets_(targets), coarsest_(coarsest), most_(most) {}
-
-  std::optional<AttributedTrial> Run() {
-    constexpr size_t kStartShare = 48;  // of the input's triangles: twice as many faces, times 64 at level 3, are a bit more
-    const size_t num_triangles = input_.original.surface.triangles.size();
-    int start = 0;
-    while (SizeAt(start + 1) <= std::min(num_triangles / kStartShare, most_)) ++start;
-    std::optional<AttributedTrial> best = At(start);
-    bool is_downhill = false;
-    for (int i = start - 1; i >= 0 && best.has_value() && Take(At(i), &best); --i) is_downhill = true;
-    for (int i = start + 1; !is_downhill && SizeAt(i) <= most_; ++i) {
-      if (!Take(At(i), &best) && best.has_value()) break;
-    }
-    return best;
-  }
-
- private:
-  size_t SizeAt(int i) const { return coarsest_ << i; }
-
-  std::optional<AttributedTrial> At(int i) const {
-    constexpr int kTries = 4;
-    constexpr uint64_t kSamples = 100'000;
-    const size_t vertices = SizeAt(i);
-    int levels = 1;
-    for (size_t faces = 8 * vertices; faces < 2 * input_.original.surface.triangles.size() && levels < 4; faces *= 4) ++levels;
-    const StatusOr<AttributedCandidate> candidate =
-        AttributedCandidate::Create(input_, static_cast<uint32_t>(vertices), levels);
-    if (!candidate.ok()) return std::nullopt;
-    const StatusOr<bool> can_meet = candidate.value().CanMeet(targets_);
-    if (!can_meet.ok() || !can_meet.value()) return std::nullopt;
-    StatusOr<AttributedTrial> trial = candidate.value().Meet(targets_, kTries, kSamples);
-    if (!trial.ok() || trial.value().ratio > 1.0) return std::nullopt;
-    return std::move(trial).value();
-  }
-
-  // Whether it is the better one, and taken.
-  static bool Take(std::optional<AttributedTrial> trial, std::optional<AttributedTrial>* best) {
-    if (!trial.has_value() || (best->has_value() && trial->stream.size() >= (*best)->stream.size())) return false;
-    *best = std::move(trial);
-    return true;
-  }
-
-  const AttributedSurface& input_;
-  const ErrorTargets& targets_;
-  const size_t coarsest_;
-  const size_t most_;
-};
 
 std::vector<std::string> NamesOf(const AttributedBase& base) {
   std::vector<std::string> names;
@@ -107,6 +53,24 @@ Status DescribeLevels(const AttributedStream& stream, const SurfaceErrorMeter& m
     }
   }
   return Status();
+}
+
+EncodeReport ReportOf(const AttributedTrial& trial, const FamilyStream& stream, const FamilyMeter& family) {
+  EncodeReport report;
+  for (const Primitive* primitive : family.primitives()) report.input_vertices += primitive->num_vertices;
+  report.input_triangles = family.original().surface.triangles.size();
+  report.diagonal = family.meter().diagonal();
+  report.progressive = true;
+  report.remesh_psnr = Psnr(trial.remesh_distance, report.diagonal);
+  report.measurements = trial.measurements;
+  const ProgressiveStream& description = stream.description;
+  uint64_t bytes = 0;
+  for (size_t level = 0; level < description.errors.size(); ++level) {
+    bytes += stream.part_sizes[level];
+    report.levels.push_back({description.vertex_counts[level], description.triangle_counts[level], bytes,
+                             description.errors[level], Psnr(description.errors[level], report.diagonal)});
+  }
+  return report;
 }
 
 StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const SurfaceErrorMeter& meter, const FamilyMeter& family) {
@@ -140,38 +104,22 @@ StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const Surfac
   result.part_sizes.push_back(result.bytes.size());
   result.part_sizes.insert(result.part_sizes.end(), stream.part_sizes.begin(), stream.part_sizes.end());
   result.bytes.insert(result.bytes.end(), stream.refinement.begin(), stream.refinement.end());
+  result.encode = ReportOf(trial, result, family);
   return result;
 }
 
 }  // namespace
 
-StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, const FamilyStreamOptions& options) {
-  constexpr double kMostInBase = 0.2;  // of the triangles to beat: what a base takes for the same triangles is no less
+StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, size_t most_bytes) {
   LACERTA_RETURN_IF_ERROR(family.status());
   if (family.leaves_out()) return Unsupported("has attributes that cannot be interpolated");
   LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original, PlainNames(family.original()));
-  const double texel_side = family.meter().texture_size();
-  LACERTA_ASSIGN_OR_RETURN(AttributedParts parts, SplitAttributedSurface(original));
-  LACERTA_ASSIGN_OR_RETURN(const CollapseHistory history, DecimateAttributed(parts));
-  const size_t coarsest = history.FacesAt(history.num_collapses()).size();
-  const auto budget = static_cast<double>(options.triangles_to_beat);
-  if (options.triangles_to_beat > 0 && static_cast<double>(coarsest) > kMostInBase * budget) {
-    return Unsupported("its seams and creases leave no coarse base");
-  }
-  LACERTA_RETURN_IF_ERROR(SimplifyStill(family.targets(), texel_side, &parts));
-  if (options.triangles_to_beat > 0 && static_cast<double>(coarsest + parts.still.surface.triangles.size()) > kMostInBase * budget) {
-    return Unsupported("most of it are small parts");
-  }
-  LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(original, texel_side));
-  const InputSurface surface(parts.refined.surface, parts.topology);
-  const size_t most = std::max<size_t>(parts.refined.surface.triangles.size() / 8, 80);
-  const AttributedSurface input{original, meter, parts, surface, history};
-  const std::optional<AttributedTrial> trial = BaseSearch(input, family.targets(), std::max<size_t>(coarsest / 2, 40), most).Run();
-  if (!trial.has_value()) return Unsupported("no base makes a remesh that is close enough");
-  if (options.bytes_to_beat > 0 && trial->stream.size() >= options.bytes_to_beat) {
-    return Unsupported("as a stream it would be larger (" + std::to_string(trial->stream.size()) + " bytes)");
-  }
-  return ToFamilyStream(*trial, meter, family);
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(original, family.meter().texture_size()));
+  AttributedSearchOptions search;
+  search.effort = effort;
+  search.most_bytes = most_bytes;
+  LACERTA_ASSIGN_OR_RETURN(const AttributedTrial trial, SmallestAttributedStream(original, meter, family.targets(), search));
+  return ToFamilyStream(trial, meter, family);
 }
 
 }  // namespace lacerta

@@ -2,12 +2,15 @@
 #ifndef LACERTA_PACK_FAMILY_STREAM_H_
 #define LACERTA_PACK_FAMILY_STREAM_H_
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "document/draco_primitive.h"
 #include "document/primitive.h"
 #include "extension/progressive.h"
+#include "lacerta/codec.h"
 #include "lacerta/gltf.h"
 #include "lacerta/status.h"
 #include "pack/family_meter.h"
@@ -18,6 +21,7 @@ struct FamilyStream {
   Bytes bytes;                      // the base section, a stock Draco stream per group, then the refinement
   std::vector<uint64_t> part_sizes; // base section, then one part per level; they add up to the bytes
   ProgressiveStream description;
+  EncodeReport encode;
   struct Group {
     std::vector<DracoAttributeId> ids;
     Primitive base;  // what a stock decoder makes of its part of the base section
@@ -26,17 +30,11 @@ struct FamilyStream {
   std::vector<std::vector<AttributeReport>> reports;  // parallel
 };
 
-struct FamilyStreamOptions {
-  // Bytes that a simplified surface takes, and its triangles: where the coarsest base alone comes near that, no stream is
-  // tried. 0: whatever it takes.
-  uint64_t bytes_to_beat = 0;
-  uint64_t triangles_to_beat = 0;
-};
-
-// The smallest stream found whose finest level meets the meter's targets, by some sizes of the base. Fails with
+// The smallest stream found whose finest level meets the meter's targets and that takes fewer than most_bytes. Fails with
 // kUnsupported, and the reason, where there is none: attributes that cannot be interpolated, too many seams, a shape of
 // which a coarse base tells too little.
-StatusOr<FamilyStream> StreamFamily(const FamilyMeter& meter, const FamilyStreamOptions& options);
+StatusOr<FamilyStream> StreamFamily(const FamilyMeter& meter, Effort effort,
+                                    size_t most_bytes = std::numeric_limits<size_t>::max());
 
 }  // namespace lacerta
 

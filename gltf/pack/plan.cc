@@ -204,10 +204,10 @@ StatusOr<FamilyCandidate> Simplified(const Context& context, size_t family, cons
   return candidate;
 }
 
-// Whether a stream of the whole family with all attributes is what is stored: it is smaller than `other` and `least` bytes,
-// or levels are wanted whatever they take. Makes it the plan then.
-bool PlanStream(size_t family, const Context& context, const FamilyMeter& meter, const FamilyCandidate* other,
-                uint64_t least, std::vector<PrimitivePlan>* plans) {
+// Whether a stream of the whole family with all attributes is what is stored: it is smaller than `least` bytes, or levels
+// are wanted whatever they take. Makes it the plan then.
+bool PlanStream(size_t family, const Context& context, const FamilyMeter& meter, uint64_t least,
+                std::vector<PrimitivePlan>* plans) {
   const PackOptions& options = *context.options;
   const std::vector<size_t>& members = context.families.families[family].members;
   const LevelChoice levels = options.encode.levels;
@@ -216,16 +216,13 @@ bool PlanStream(size_t family, const Context& context, const FamilyMeter& meter,
   for (const size_t member : members) {
     if (!context.sources[member].targets.empty()) return false;
   }
-  FamilyStreamOptions wanted;
-  const uint64_t json = kDracoJsonBytes * members.size() + kProgressiveJsonBytes;
+  size_t most_bytes = std::numeric_limits<size_t>::max();
   if (levels != LevelChoice::kAlways) {
+    const uint64_t json = kDracoJsonBytes * members.size() + kProgressiveJsonBytes;
     if (least <= json) return false;
-    wanted.bytes_to_beat = least - json;
-    for (const DracoCandidate& member : other == nullptr ? std::vector<DracoCandidate>() : other->members) {
-      wanted.triangles_to_beat += member.encoded.decoded.triangles.size();
-    }
+    most_bytes = least - json;
   }
-  StatusOr<FamilyStream> stream = StreamFamily(meter, wanted);
+  StatusOr<FamilyStream> stream = StreamFamily(meter, options.encode.effort, most_bytes);
   if (!stream.ok()) {
     for (const size_t member : members) AddReason("no stream: " + stream.status().message(), &(*plans)[member].report);
     return false;
@@ -239,6 +236,7 @@ bool PlanStream(size_t family, const Context& context, const FamilyMeter& meter,
     report.storage = PrimitiveStorage::kProgressive;
     report.reason = "with its attributes in " + std::to_string(shared->part_sizes.size() - 1) + " levels";
     report.attributes = shared->reports[m];
+    report.encode = shared->encode;
     report.error = shared->description.errors.back();
     report.target_error = ErrorOf(context, family);
     // The refinement is that of all; the first carries it.
@@ -276,7 +274,7 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
       simplified_reason = simplified.ok() ? "simplified it would be larger" : "not simplified: " + simplified.status().message();
     }
   }
-  if (!is_stream && PlanStream(family, context, meter, chosen.ok() ? &chosen.value() : nullptr, least, plans)) return;
+  if (!is_stream && PlanStream(family, context, meter, least, plans)) return;
   for (size_t m = 0; m < members.size(); ++m) {
     PrimitivePlan& plan = (*plans)[members[m]];
     if (!chosen.ok()) {

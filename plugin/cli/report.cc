@@ -54,13 +54,15 @@ Json ToJson(const PackReport& report) {
                  {"bytesBefore", primitive.bytes_before},
                  {"bytesAfter", primitive.bytes_after}};
     if (primitive.storage == PrimitiveStorage::kProgressive) json["encode"] = ToJson(primitive.encode);
-    if (primitive.storage == PrimitiveStorage::kDraco) {
+    const bool is_draco = primitive.storage == PrimitiveStorage::kDraco;
+    if (is_draco || !primitive.attributes.empty()) {
       json["error"] = NumberOrNull(primitive.error);
       json["targetError"] = NumberOrNull(primitive.target_error);
-      json["attributes"] = {{"POSITION", {{"bits", primitive.position_bits}}}};
+      if (is_draco) json["attributes"] = {{"POSITION", {{"bits", primitive.position_bits}}}};
       for (const AttributeReport& attribute : primitive.attributes) {
-        json["attributes"][attribute.name] = {
-            {"bits", attribute.bits}, {"error", NumberOrNull(attribute.error)}, {"unit", attribute.unit}};
+        Json& to = json["attributes"][attribute.name];
+        to = {{"error", NumberOrNull(attribute.error)}, {"unit", attribute.unit}};
+        if (is_draco) to["bits"] = attribute.bits;
       }
     }
     primitives.push_back(std::move(json));

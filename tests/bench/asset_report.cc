@@ -31,7 +31,7 @@ namespace lacerta {
 namespace {
 
 struct Errors {
-  double psnr = kMaxPsnr, texels = 0.0, degrees = 0.0;
+  double psnr = kMaxPsnr, texels = 0.0, degrees = 0.0, turned = 0.0;
 };
 
 struct Asset {
@@ -107,6 +107,7 @@ StatusOr<Errors> MeasureAll(const std::vector<Judge>& judges, const std::vector<
     LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh, Join(primitives, judge.members, judge.texels));
     LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, judge.meter.Measure(mesh, kSamples));
     worst.psnr = std::min(worst.psnr, Psnr(errors.distance, judge.scale));
+    worst.turned = std::max(worst.turned, errors.turned);
     for (size_t a = 0; a < judge.original.attributes.size(); ++a) {
       const double error = errors.attributes[a].rms_99 / judge.units.attributes[a];
       const AttributeKind kind = judge.original.attributes[a].kind;
@@ -241,9 +242,9 @@ Status Report(const std::vector<std::string>& files, const Errors& wanted) {
   LACERTA_ASSIGN_OR_RETURN(const Stock stock, FewestStock(original.primitives, judges, wanted));
   uint64_t vertices = 0;
   for (const Primitive& primitive : original.primitives) vertices += primitive.num_vertices;
-  std::printf("{\"vertices\": %llu, \"psnr\": %.2f, \"texels\": %.3f, \"degrees\": %.3f, \"borderEdgesBefore\": %llu, \"borderEdgesAfter\": %llu, "
+  std::printf("{\"vertices\": %llu, \"psnr\": %.2f, \"texels\": %.3f, \"degrees\": %.3f, \"turned\": %.5f, \"borderEdgesBefore\": %llu, \"borderEdgesAfter\": %llu, "
               "\"stockBytes\": %llu, \"stockBits\": [%d, %d, %d], \"stockPsnr\": %.2f, \"stockTexels\": %.3f, \"stockDegrees\": %.3f}\n",
-              static_cast<unsigned long long>(vertices), ours.psnr, ours.texels, ours.degrees,
+              static_cast<unsigned long long>(vertices), ours.psnr, ours.texels, ours.degrees, ours.turned,
               static_cast<unsigned long long>(BorderEdges(before.mesh)), static_cast<unsigned long long>(BorderEdges(after.mesh)),
               static_cast<unsigned long long>(stock.bytes), stock.bits[0], stock.bits[1], stock.bits[2], stock.errors.psnr, stock.errors.texels, stock.errors.degrees);
   return Status();

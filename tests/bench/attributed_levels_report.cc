@@ -20,7 +20,7 @@
 #include "lacerta/surface_distance.h"
 #include "remesh/attributed_remesh.h"
 #include "remesh/attributed_still.h"
-#include "remesh/level_attributes.h"
+#include "remesh/level_wedges.h"
 #include "remesh/simplify_to_errors.h"
 
 namespace lacerta {
@@ -64,7 +64,7 @@ void WriteObj(const AttributedMesh& mesh, const std::string& path) {
 Status ReportStream(const AttributedSurface& input, uint32_t base, int levels, const ErrorTargets& targets) {
   const double start = Seconds();
   LACERTA_ASSIGN_OR_RETURN(const AttributedCandidate candidate, AttributedCandidate::Create(input, base, levels));
-  LACERTA_ASSIGN_OR_RETURN(const AttributedTrial trial, candidate.Meet(targets, 8, 50'000));
+  LACERTA_ASSIGN_OR_RETURN(const AttributedTrial trial, candidate.Meet(targets, MeetOptions()));
   size_t base_bytes = 0;
   for (const Bytes& bytes : trial.stream.bases) base_bytes += bytes.size();
   std::printf("  stream of %zu bytes: base %zu", trial.stream.size(), base_bytes);
@@ -122,7 +122,8 @@ Status Report(const NamedSurface& named, const Wanted& wanted) {
   AttributedSemiRegularMesh mesh = remesh.Semiregular();
   constexpr uint64_t kSamples = 100'000;
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors sampled, meter.Measure(FinestLevel(mesh), kSamples));
-  FitLevelAttributes(named.mesh, &mesh);
+  const GroupSurface original(named.mesh);
+  FitLevelAttributes(original, &mesh);
   const double seconds = Seconds() - start;
   const AttributedMesh finest = FinestLevel(mesh);
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, meter.Measure(finest, kSamples));
@@ -138,7 +139,7 @@ Status Report(const NamedSurface& named, const Wanted& wanted) {
   if (wanted.psnr > 0) {
     LACERTA_ASSIGN_OR_RETURN(const std::string bytes, PositionBytes(named.mesh, coded, remesh.surface, wanted.psnr));
     const ErrorTargets targets = TargetsFor(named.mesh, DistanceOfPsnr(wanted.psnr, meter.diagonal()), 1, 2);
-    LACERTA_RETURN_IF_ERROR(ReportStream({named.mesh, meter, parts, surface, history}, wanted.base, options.num_levels, targets));
+    LACERTA_RETURN_IF_ERROR(ReportStream({original, meter, parts, surface, history}, wanted.base, options.num_levels, targets));
     std::printf("  positions at %.1f dB: %s\n", wanted.psnr, bytes.c_str());
   }
   if (!wanted.obj.empty()) {

@@ -51,7 +51,7 @@ Status Report(const NamedSurface& named, const Wanted& wanted) {
   for (size_t faces = base_faces; wanted.levels == 0 && faces < parts.refined.surface.triangles.size(); faces *= 4) ++options.num_levels;
   LACERTA_ASSIGN_OR_RETURN(AttributedNormalMesh remesh, RemeshAttributed(parts, surface, history, options));
   AttributedSemiRegularMesh fitted = remesh.Semiregular();
-  FitLevelAttributes(named.mesh, &fitted);
+  FitLevelAttributes(GroupSurface(named.mesh), &fitted);
   remesh.attributes = fitted.attributes;
 
   const double usual = std::log(UsualLambda(wanted.psnr, meter.diagonal()));

@@ -58,10 +58,10 @@ enum class PrimitiveStorage {
   kUntouched,    // as it was
 };
 
-// An attribute of a primitive that is stored as KHR_draco_mesh_compression.
+// An attribute of a primitive that is stored anew.
 struct AttributeReport {
   std::string name;
-  int bits = 0;        // per component; 0: exact
+  int bits = 0;        // per component, of KHR_draco_mesh_compression; 0: exact
   double error = 0.0;  // measured, RMS over the surface
   std::string unit;    // "texels", "degrees", or empty: that of the values
 };
@@ -74,13 +74,13 @@ struct PrimitiveReport {
   std::string reason;         // why it is not progressive, or what EncodeMesh had to say; else empty
   uint64_t bytes_before = 0;  // of its attributes and indices
   uint64_t bytes_after = 0;
-  EncodeReport encode;  // of progressive ones
-  // Of those stored as Draco: measured d_S in mesh units (over all primitives that touch it and share its lattice), what
+  EncodeReport encode;  // of progressive ones; where several share a stream, of all of it with each
+  // Of those stored as Draco or with attributes: measured d_S in mesh units (over all primitives that touch it and share its lattice), what
   // was asked for, and the bits of a position.
   double error = 0.0;
   double target_error = 0.0;
-  int position_bits = 0;
-  std::vector<AttributeReport> attributes;  // of those stored as Draco, without positions
+  int position_bits = 0;  // of those stored as Draco
+  std::vector<AttributeReport> attributes;  // without positions
 };
 
 struct PackReport {

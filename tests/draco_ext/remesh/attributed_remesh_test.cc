@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "lacerta/surface_distance.h"
-#include "remesh/level_attributes.h"
+#include "remesh/level_wedges.h"
 #include "remesh/simplify_to_errors.h"
 #include "shapes/attributed_shapes.h"
 #include "shapes/shapes.h"
@@ -102,7 +102,7 @@ TEST(AttributedRemeshTest, TheFinestLevelIsNearTheInputInAllAttributes) {
     const SurfaceErrorMeter meter = SurfaceErrorMeter::Create(shape.mesh).value();
     for (const bool is_fitted : {false, true}) {
       SCOPED_TRACE(is_fitted ? "fitted" : "sampled");
-      if (is_fitted) FitLevelAttributes(shape.mesh, &remesh);
+      if (is_fitted) FitLevelAttributes(GroupSurface(shape.mesh), &remesh);
       const AttributedMesh finest = FinestLevel(remesh);
       ASSERT_TRUE(CheckAttributedMesh(finest).ok());
       const SurfaceErrors errors = meter.Measure(finest, 20'000).value();

@@ -53,6 +53,18 @@ TEST(FamilyStream, OneStreamHoldsBothHalves) {
     }
   }
   EXPECT_LT(packed.glb.size() * 5, Torus().size());
+
+  const EncodeReport& encode = packed.report.primitives[0].encode;
+  EXPECT_EQ(packed.report.primitives[1].encode.levels.size(), encode.levels.size());
+  ASSERT_EQ(encode.levels.size(), extension["streams"][0u]["errors"].size());
+  for (size_t level = 1; level < encode.levels.size(); ++level) {
+    EXPECT_GT(encode.levels[level].bytes, encode.levels[level - 1].bytes);
+    EXPECT_GT(encode.levels[level].psnr, encode.levels[level - 1].psnr);
+  }
+  EXPECT_EQ(encode.levels.back().bytes, packed.report.primitives[0].bytes_after + packed.report.primitives[1].bytes_after);
+  EXPECT_GT(encode.remesh_psnr, encode.levels.back().psnr);
+  EXPECT_LT(encode.remesh_psnr, encode.levels.back().psnr + 40);
+  EXPECT_GT(encode.measurements, 1);
 }
 
 TEST(FamilyStream, EveryLevelIsWholeAndBetterThanTheOneBefore) {
@@ -169,12 +181,12 @@ TEST(FamilyStream, NoStreamWithoutAReason) {
   const VertexSoup box = shapes::TexturedBox(4);  // all seams
   Primitive primitive{box.positions.size(), box.triangles, {{"POSITION", MakeFloatAccessor(box.positions)}}};
   const FamilyMeter meter({&primitive}, 1e-3, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
-  const auto small = StreamFamily(meter, {});
+  const auto small = StreamFamily(meter, Effort::kNormal);
   EXPECT_EQ(small.status().code(), StatusCode::kUnsupported);
   EXPECT_FALSE(small.status().message().empty());
   primitive.attributes.push_back({"_MINE", primitive.attributes[0].data});
   const FamilyMeter with_other({&primitive}, 1e-3, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
-  EXPECT_THAT(StreamFamily(with_other, {}).status().message(), HasSubstr("interpolated"));
+  EXPECT_THAT(StreamFamily(with_other, Effort::kNormal).status().message(), HasSubstr("interpolated"));
 }
 
 }  // namespace

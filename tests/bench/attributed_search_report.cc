@@ -1,0 +1,70 @@
+// Looks for the smallest progressive stream of the surfaces of glTF files, with their attributes: one line of JSON for
+// each mesh: attributed_search_report [--psnr DB] [--texels T] [--degrees D] [--effort 0..2] [--most BYTES] FILE...
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "bench/gltf_surfaces.h"
+#include "draco/attributed_search.h"
+#include "draco/decoded_distance.h"
+
+namespace lacerta {
+namespace {
+
+struct Wanted {
+  double psnr = 70, texels = 1, degrees = 2;
+  AttributedSearchOptions search;
+};
+
+Status Report(const NamedSurface& named, const Wanted& wanted) {
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(named.mesh));
+  ErrorTargets targets = TargetsFor(named.mesh, DistanceOfPsnr(wanted.psnr, meter.diagonal()), wanted.texels, wanted.degrees);
+  targets.turned = 5e-4;
+  const auto begin = std::chrono::steady_clock::now();
+  LACERTA_ASSIGN_OR_RETURN(const AttributedTrial trial, SmallestAttributedStream(named.mesh, meter, targets, wanted.search));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const AttributedStream& stream = trial.stream;
+  size_t base_bytes = 0, residual_bytes = 0;
+  for (const Bytes& b : stream.bases) base_bytes += b.size();
+  for (const size_t b : stream.residual_bytes) residual_bytes += b;
+  std::printf("{\"mesh\": \"%s\", \"triangles\": %zu, \"base_triangles\": %zu, \"levels\": %d, \"seconds\": %.1f, \"bytes\": %zu, \"base\": %zu, \"positions\": %zu, "
+              "\"psnr\": %.2f, \"turned\": %.5f",
+              named.name.c_str(), named.mesh.surface.triangles.size(), stream.decoded.surface.base_triangles.size(), stream.decoded.surface.num_levels, seconds,
+              stream.size(), base_bytes, stream.refinement.size() - residual_bytes, Psnr(trial.errors.distance, meter.diagonal()), trial.errors.turned);
+  for (size_t a = 0; a < stream.residual_bytes.size(); ++a) {
+    std::printf(", \"%s\": {\"bytes\": %zu, \"rms_99\": %.3g}", stream.decoded.attributes[a].name.c_str(), stream.residual_bytes[a], trial.errors.attributes[a].rms_99);
+  }
+  std::printf("}\n");
+  std::fflush(stdout);
+  return Status();
+}
+
+}  // namespace
+}  // namespace lacerta
+
+int main(int argc, char** argv) {
+  lacerta::Wanted wanted;
+  int failures = 0;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument.rfind("--", 0) == 0 && i + 1 < argc) {
+      const double value = std::atof(argv[++i]);
+      if (argument == "--psnr") wanted.psnr = value;
+      if (argument == "--texels") wanted.texels = value;
+      if (argument == "--degrees") wanted.degrees = value;
+      if (argument == "--effort") wanted.search.effort = static_cast<lacerta::Effort>(static_cast<int>(value));
+      if (argument == "--most") wanted.search.most_bytes = static_cast<size_t>(value);
+      continue;
+    }
+    const auto surfaces = lacerta::ReadGltfSurfaces(argument);
+    for (size_t s = 0; surfaces.ok() && s < surfaces.value().size(); ++s) {
+      const lacerta::Status report = lacerta::Report(surfaces.value()[s], wanted);
+      if (!report.ok()) std::fprintf(stderr, "%s\n", report.WithContext(surfaces.value()[s].name).message().c_str());
+    }
+    if (surfaces.ok()) continue;
+    std::fprintf(stderr, "%s: %s\n", argument.c_str(), surfaces.status().message().c_str());
+    ++failures;
+  }
+  return failures == 0 ? 0 : 1;
+}
