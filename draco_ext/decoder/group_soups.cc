@@ -1,9 +1,9 @@
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "common/keyed_sort.h"
 #include "lacerta/attributed_mesh.h"
 
 namespace lacerta {
@@ -20,24 +20,23 @@ std::vector<uint32_t> FirstEqualCorner(const AttributedMesh& mesh) {
   for (uint32_t corner = 0; corner < num_corners; ++corner) ++end[vertex_of(corner)];
   uint32_t begin = 0;
   for (uint32_t& e : end) begin += std::exchange(e, begin);
-  std::vector<uint32_t> order(num_corners), first(num_corners);
-  for (uint32_t corner = 0; corner < num_corners; ++corner) order[end[vertex_of(corner)]++] = corner;
-  // Below zero, zero or above it: corner a before, equal to or after corner b.
-  const auto compare = [&](uint32_t a, uint32_t b) {
-    if (const uint32_t x = mesh.GroupOf(a / 3), y = mesh.GroupOf(b / 3); x != y) return x < y ? -1 : 1;
-    for (const MeshAttribute& attribute : mesh.attributes) {
-      if (const uint32_t x = attribute.corners[a / 3][a % 3], y = attribute.corners[b / 3][b % 3]; x != y) return x < y ? -1 : 1;
-    }
-    return 0;
-  };
+  std::vector<KeyedIndex> around(num_corners);
+  for (uint32_t corner = 0; corner < num_corners; ++corner) around[end[vertex_of(corner)]++].index = corner;
+  std::vector<uint32_t> first(num_corners);
   begin = 0;
   for (const uint32_t e : end) {
-    std::sort(order.begin() + begin, order.begin() + e, [&](uint32_t a, uint32_t b) {
-      const int sign = compare(a, b);
-      return sign < 0 || (sign == 0 && a < b);
-    });
-    for (uint32_t i = begin; i < e; ++i) {
-      first[order[i]] = i > begin && compare(order[i], order[i - 1]) == 0 ? first[order[i - 1]] : order[i];
+    for (uint32_t i = begin; i < e; ++i) first[around[i].index] = around[begin].index;
+    // By one column after the other: what was equal so far and is equal in it stays so.
+    for (size_t column = 0; column <= mesh.attributes.size() && e - begin > 1; ++column) {
+      for (uint32_t i = begin; i < e; ++i) {
+        const uint32_t c = around[i].index, value = column == 0 ? mesh.GroupOf(c / 3) : mesh.attributes[column - 1].corners[c / 3][c % 3];
+        around[i].key = uint64_t{first[c]} << 32 | value;
+      }
+      SortKeyed(&around, begin, e);
+      for (uint32_t i = begin; i < e; ++i) {
+        const bool is_equal = i > begin && around[i].key == around[i - 1].key;
+        first[around[i].index] = is_equal ? first[around[i - 1].index] : around[i].index;
+      }
     }
     begin = e;
   }

@@ -3,9 +3,9 @@
 #define LACERTA_STATUS_H_
 
 #include <cassert>
+#include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 
 namespace lacerta {
 
@@ -76,19 +76,20 @@ class [[nodiscard]] Status {
 template <typename T>
 class [[nodiscard]] StatusOr {
  public:
-  StatusOr(T value) : content_(std::move(value)) {}                // NOLINT: implicit on purpose
-  StatusOr(Status status) : content_(std::move(status)) {          // NOLINT
-    assert(!std::get<Status>(content_).ok());
+  StatusOr(T value) : value_(std::move(value)) {}                  // NOLINT: implicit on purpose
+  StatusOr(Status status) : status_(std::move(status)) {           // NOLINT
+    assert(!status_.ok());
   }
 
-  bool ok() const { return std::holds_alternative<T>(content_); }
-  Status status() const { return ok() ? Status() : std::get<Status>(content_); }
-  const T& value() const& { return *std::get_if<T>(&content_); }
-  T& value() & { return *std::get_if<T>(&content_); }
-  T&& value() && { return std::move(*std::get_if<T>(&content_)); }
+  bool ok() const { return value_.has_value(); }
+  Status status() const { return status_; }
+  const T& value() const& { return *value_; }
+  T& value() & { return *value_; }
+  T&& value() && { return std::move(*value_); }
 
  private:
-  std::variant<Status, T> content_;
+  Status status_;  // two members, not one variant, whose code takes twice the bytes in WebAssembly
+  std::optional<T> value_;
 };
 
 #define LACERTA_CONCAT_INNER(a, b) a##b

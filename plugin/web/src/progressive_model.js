@@ -65,7 +65,10 @@ export class ProgressiveModel extends EventTarget {
     if (this.#running || this.#feed.isWhole || !this.#source) return this.#running ?? Promise.resolve();
     if (this.signal.aborted) this.#abort = new AbortController();
     const {signal} = this;
-    return this.#running = this.#source(this, signal).catch(error => {
+    return this.#running = this.#source(this, signal).then(() => {
+      const {available} = this.#progressive;
+      if (this.received < available) throw new Error(`the file ends early: ${this.received} of ${available} bytes of the surfaces are there; the last good level stays`);
+    }).catch(error => {
       if (!signal.aborted) this.#problem(error.message);
     }).finally(() => { this.#running = undefined; });
   }
