@@ -20,7 +20,7 @@ for (const name of ['base_section', 'caller_data', 'group_base', 'lacerta', 'no_
 sources.unshift(join(here, 'wasm/hot_paths.cc'), join(here, 'wasm/cosine.cc'));  // first: its instances are taken
 
 // Where the time goes; all else is built for size.
-const forSpeed = new Set(['hot_paths', 'coefficient_coding', 'synthesis']);
+const forSpeed = new Set(['hot_paths', 'synthesis']);
 const includes = ['draco_ext', 'draco_ext/include', 'plugin/c', 'plugin/c/include'].map(folder => `-I${join(root, folder)}`);
 const flags = ['-std=c++17', '-DNDEBUG', '-DLACERTA_TERSE', '-fno-exceptions', '-fno-rtti', '-flto', '-mbulk-memory', '-msign-ext', '-mnontrapping-fptoint', '-fno-math-errno',
   '-ffp-contract=off'];  // the floats of every other build

@@ -1,8 +1,7 @@
 // The functions of lacerta.h over an instance of lacerta.wasm. Synchronous: use pool.js to keep it off the main thread.
 
 const kOk = 0, kNeedsBase = 7, kAllGroups = 0xffffffff;
-const kNames = ['ok', 'invalid argument', 'damaged or not made for this base', 'made by a newer version', 'over the limits', 'out of memory', 'internal error',
-  'the base has to be decoded by Draco'];
+const kNames = [, 'invalid argument', 'damaged or not made for this base', 'made by a newer version', 'over the limits', 'out of memory', 'internal error'];
 // Sizes of the structs of lacerta.h, with 32-bit pointers.
 const kOptionsSize = 56, kProgressSize = 40, kAttributeSize = 72, kGroupSize = 32, kMeshSizeSize = 16, kBuffersSize = 32, kScratchSize = 80;
 
