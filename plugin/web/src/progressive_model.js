@@ -44,6 +44,8 @@ export class ProgressiveModel extends EventTarget {
     await Promise.all(this.surfaces.map(surface => surface.begin()));
   }
 
+  /** Messages of all 'problem' events so far; a small file may have had its problem before anybody listens. */
+  get problems() { return [...this.#problems]; }
   get received() { return this.#feed.bytes; }
   get total() { return this.#progressive.length; }
   get signal() { return this.#abort.signal; }
