@@ -1,8 +1,9 @@
 #include "common/base_tags.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
+
+#include "common/keyed_sort.h"
 
 namespace lacerta {
 namespace {
@@ -14,13 +15,10 @@ void ClearIfZero(std::vector<uint8_t>* flags) {
 }  // namespace
 
 std::vector<uint32_t> FirstAtSamePoint(Span<const std::array<int32_t, 3>> lattice) {
-  std::vector<uint32_t> order(lattice.size()), first(lattice.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    return lattice[a] != lattice[b] ? lattice[a] < lattice[b] : a < b;
-  });
-  for (size_t i = 0; i < order.size(); ++i) {
-    first[order[i]] = i > 0 && lattice[order[i - 1]] == lattice[order[i]] ? first[order[i - 1]] : order[i];
+  std::vector<uint32_t> first(lattice.size(), 0), column(lattice.size());
+  for (size_t c = 0; c < 3; ++c) {
+    for (size_t v = 0; v < lattice.size(); ++v) column[v] = static_cast<uint32_t>(lattice[v][c]);
+    RefineEqual(column, &first);
   }
   return first;
 }

@@ -9,6 +9,7 @@
 #include "common/gluing.h"
 #include "common/octahedral.h"
 #include "common/stream_layout.h"
+#include "common/subdivision.h"
 
 namespace lacerta {
 namespace {
@@ -50,7 +51,8 @@ LevelAttribute GlueAttribute(const AttributedBase& base, const std::vector<uint3
   const std::vector<Triangle>& triangles = base.mesh.triangles;
   const uint32_t n = a.numbers_per_value();
   const auto value_at = [&](uint32_t face, uint32_t corner) { return a.values.begin() + size_t{triangles[face][corner % 3]} * n; };
-  const auto has = [&](uint32_t f) { return a.in_group[groups[f]] != 0; };
+  std::vector<uint8_t> is_in(triangles.size());
+  for (size_t f = 0; f < is_in.size(); ++f) is_in[f] = a.in_group[groups[f]];
   const auto is_glued = [&](uint32_t h, uint32_t twin) {
     const auto same = [&](uint32_t corner, uint32_t other) {
       const auto first = value_at(h / 3, corner), second = value_at(twin / 3, other);
@@ -58,7 +60,11 @@ LevelAttribute GlueAttribute(const AttributedBase& base, const std::vector<uint3
     };
     return same(h % 3 + 1, twin % 3 + 2) && same(h % 3 + 2, twin % 3 + 1);
   };
-  GluedCorners glued = GlueCorners(triangles.size(), twins, has, is_glued);
+  std::vector<uint32_t> glued_twins = twins;
+  for (uint32_t h = 0; h < twins.size(); ++h) {
+    if (twins[h] != kNone && is_in[h / 3] != 0 && is_in[twins[h] / 3] != 0 && !is_glued(h, twins[h])) glued_twins[h] = kNone;
+  }
+  GluedCorners glued = GlueCorners(is_in, glued_twins);
   LevelAttribute result{a.precision.name, a.precision.kind, a.precision.components, std::move(glued.vertices),
                         static_cast<uint32_t>(glued.first_corner.size()), {}};
   for (const uint32_t corner : glued.first_corner) AppendValue(a.precision, &*value_at(corner / 3, corner % 3), &result.values);
@@ -77,7 +83,7 @@ StatusOr<GluedBase> GlueBase(const AttributedBase& base) {
   GluedBase result;
   LACERTA_ASSIGN_OR_RETURN(result.groups, GroupsOfTriangles(base));
   const std::vector<uint32_t> twins = PairHalfEdges(lattice, base.mesh.triangles);
-  GluedCorners surface = GlueCorners(base.mesh.triangles.size(), twins, [](uint32_t) { return true; }, [](uint32_t, uint32_t) { return true; });
+  GluedCorners surface = GlueCorners(std::vector<uint8_t>(base.mesh.triangles.size(), 1), twins);
   result.mesh.step = base.mesh.step;
   for (const uint32_t corner : surface.first_corner) result.mesh.lattice.push_back(lattice[base.mesh.triangles[corner / 3][corner % 3]]);
   result.mesh.triangles = std::move(surface.vertices);

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "lacerta/mesh.h"
@@ -21,10 +20,9 @@ struct GluedCorners {
   std::vector<uint32_t> first_corner;  // of each vertex: 3f + k
 };
 
-// Corners that are one vertex: those across the pairs for which is_glued(half-edge, its twin) holds, which must be the same either way
-// round. Vertices are numbered in the order of their first corners. is_in(f): whether triangle f takes part.
-GluedCorners GlueCorners(size_t num_triangles, Span<const uint32_t> twins, const std::function<bool(uint32_t)>& is_in,
-                         const std::function<bool(uint32_t, uint32_t)>& is_glued);
+// Corners that are one vertex: those across the pairs of half-edges in `twins`, as PairHalfEdges makes them, or kNone where a pair is not glued,
+// which must be the same either way round. Vertices are numbered in the order of their first corners. is_in: #F, whether a triangle takes part.
+GluedCorners GlueCorners(Span<const uint8_t> is_in, Span<const uint32_t> twins);
 
 }  // namespace lacerta
 

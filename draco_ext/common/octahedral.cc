@@ -34,7 +34,8 @@ Vec3f NormalFromOctahedral(const std::array<int32_t, 2>& point, int bits) {
   const double center = Largest(bits) / 2;
   const double s = point[0] / center - 1, t = point[1] / center - 1;
   const double x = 1 - std::fabs(s) - std::fabs(t), fold = std::max(-x, 0.0);
-  return Normalized(Vec3Cast<float>(Vec3d{x, s + (s < 0 ? fold : -fold), t + (t < 0 ? fold : -fold)}));
+  // Rounded to float at the end alone: GCC 12 leaves out what is rounded on the way where it makes vectors of it.
+  return Vec3Cast<float>(Normalized(Vec3d{x, s + (s < 0 ? fold : -fold), t + (t < 0 ? fold : -fold)}));
 }
 
 }  // namespace lacerta

@@ -15,7 +15,9 @@ int64_t Root(const Expectation& e) { return e.foresight == Foresight::kFlaps ? S
 CoordinateOrder OrderCoordinates(const LatticeVector& normal, const Spread& spread) {
   CoordinateOrder plan;
   const auto length = [&](size_t c) { return normal[c] < 0 ? -normal[c] : normal[c]; };
-  std::stable_sort(plan.order.begin(), plan.order.end(), [&](size_t a, size_t b) { return length(a) < length(b); });
+  for (const size_t k : {size_t{0}, size_t{1}, size_t{0}}) {  // three exchanges sort them; equal ones keep their order
+    if (length(plan.order[k + 1]) < length(plan.order[k])) std::swap(plan.order[k], plan.order[k + 1]);
+  }
   const auto n = [&](size_t k) { return normal[plan.order[k]]; };
   const int64_t along = std::max<int64_t>(spread.along, 1);
   // Covariance along^2 (1 + m n n^T); the shares and variances of the normal distribution given the coordinates before.

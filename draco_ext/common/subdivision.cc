@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "common/keyed_sort.h"
+
 namespace lacerta {
 namespace {
 
@@ -18,17 +20,17 @@ std::vector<uint32_t> FirstCornerOfEdge(const std::vector<Triangle>& triangles, 
   std::vector<uint32_t> end(num_vertices, 0);  // of the pairs of a lower vertex; first their number, then their beginning
   for (uint32_t corner = 0; corner < num_corners; ++corner) ++end[pair_of(corner).first];
   for (uint32_t v = 0, begin = 0; v < num_vertices; ++v) begin += std::exchange(end[v], begin);
-  std::vector<std::pair<uint32_t, uint32_t>> keyed(num_corners);  // the higher vertex, the corner
+  std::vector<KeyedIndex> keyed(num_corners);  // the higher vertex, the corner
   for (uint32_t corner = 0; corner < num_corners; ++corner) {
     const auto [lower, higher] = pair_of(corner);
     keyed[end[lower]++] = {higher, corner};
   }
   std::vector<uint32_t> first(num_corners);
   for (uint32_t v = 0, begin = 0; v < num_vertices; begin = end[v++]) {
-    std::sort(keyed.begin() + begin, keyed.begin() + end[v]);
+    SortKeyed(&keyed, begin, end[v]);
     for (uint32_t i = begin; i < end[v]; ++i) {
-      const bool is_first = i == begin || keyed[i - 1].first != keyed[i].first;
-      first[keyed[i].second] = is_first ? keyed[i].second : first[keyed[i - 1].second];
+      const bool is_first = i == begin || keyed[i - 1].key != keyed[i].key;
+      first[keyed[i].index] = is_first ? keyed[i].index : first[keyed[i - 1].index];
     }
   }
   return first;
@@ -112,20 +114,20 @@ Status JoinBorders(const std::vector<uint32_t>& joined, Topology* t) {
   t->master.clear();
   if (joined.empty()) return Status();
   if (joined.size() != t->num_vertices) return InvalidData("the joined vertices are not as many as the vertices");
-  std::vector<std::pair<uint64_t, uint32_t>> keyed;
+  std::vector<KeyedIndex> keyed;
   for (uint32_t e = 0; e < t->num_edges(); ++e) {
     if (!t->is_border(e)) continue;
     const uint64_t a = joined[t->edges[e][0]], b = joined[t->edges[e][1]];
-    if (a != b) keyed.emplace_back(std::min(a, b) << 32 | std::max(a, b), e);
+    if (a != b) keyed.push_back({std::min(a, b) << 32 | std::max(a, b), e});
   }
-  std::sort(keyed.begin(), keyed.end());
+  SortKeyed(&keyed, 0, keyed.size());
   t->master.assign(t->num_edges(), kNone);
   uint32_t first = 0;
   for (size_t i = 0; i < keyed.size(); ++i) {
-    if (i > 0 && keyed[i - 1].first == keyed[i].first) {
-      t->master[keyed[i].second] = first;
+    if (i > 0 && keyed[i - 1].key == keyed[i].key) {
+      t->master[keyed[i].index] = first;
     } else {
-      first = keyed[i].second;
+      first = keyed[i].index;
     }
   }
   // A copy runs as its master does, so that Refine gives both the same halves.

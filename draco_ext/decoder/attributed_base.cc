@@ -54,6 +54,20 @@ StatusOr<std::vector<Triangle>> CornersAtLevel(const LevelAttribute& a, const Ba
   return WithStillTriangles(std::move(corners), a.base_corners, tags);
 }
 
+StatusOr<AttributedMesh> MakeLevel(const SemiRegularMesh& surface, const std::vector<uint32_t>& base_groups,
+                                   const std::vector<LevelAttribute>& attributes, int level) {
+  AttributedMesh result;
+  LACERTA_ASSIGN_OR_RETURN(result.surface, MeshAtLevel(surface, level));
+  result.groups = GroupsAtLevel(base_groups, surface.tags, level);
+  for (const LevelAttribute& a : attributes) {
+    if (a.components == 0 || a.base_corners.size() != surface.base_triangles.size())
+      return InvalidData("attribute " + a.name + " has not got the triangles of the base");
+    LACERTA_ASSIGN_OR_RETURN(std::vector<Triangle> corners, CornersAtLevel(a, surface.tags, level));
+    result.attributes.push_back({a.name, a.kind, a.components, a.values, std::move(corners)});
+  }
+  return result;
+}
+
 }  // namespace
 
 StatusOr<AttributedBase> AttributedBaseFromSoups(const std::vector<VertexSoup>& groups, float step,
@@ -78,14 +92,17 @@ StatusOr<AttributedBase> AttributedBaseFromSoups(const std::vector<VertexSoup>& 
 }
 
 StatusOr<AttributedMesh> AttributedMeshAtLevel(const AttributedSemiRegularMesh& mesh, int level) {
+  return MakeLevel(mesh.surface, mesh.base_groups, mesh.attributes, level);
+}
+
+StatusOr<AttributedMesh> AttributedMeshAtLevel(const ProgressiveDecoder& decoder, int level) {
+  if (level != decoder.level()) return MakeLevel(decoder.mesh(), decoder.base_groups(), decoder.attributes(), level);
   AttributedMesh result;
-  LACERTA_ASSIGN_OR_RETURN(result.surface, MeshAtLevel(mesh.surface, level));
-  result.groups = GroupsAtLevel(mesh.base_groups, mesh.surface.tags, level);
-  for (const LevelAttribute& a : mesh.attributes) {
-    if (a.components == 0 || a.base_corners.size() != mesh.surface.base_triangles.size())
-      return InvalidData("attribute " + a.name + " has not got the triangles of the base");
-    LACERTA_ASSIGN_OR_RETURN(std::vector<Triangle> corners, CornersAtLevel(a, mesh.surface.tags, level));
-    result.attributes.push_back({a.name, a.kind, a.components, a.values, std::move(corners)});
+  result.surface = {decoder.mesh().positions, decoder.Triangles()};
+  result.groups = decoder.Groups();
+  for (size_t i = 0; i < decoder.attributes().size(); ++i) {
+    const LevelAttribute& a = decoder.attributes()[i];
+    result.attributes.push_back({a.name, a.kind, a.components, a.values, decoder.Corners(i)});
   }
   return result;
 }

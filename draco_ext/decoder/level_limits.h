@@ -1,4 +1,4 @@
-// What the limits of a decoder say to one more level.
+// What the limits of a decoder say to a base and to one more level.
 #ifndef LACERTA_DECODER_LEVEL_LIMITS_H_
 #define LACERTA_DECODER_LEVEL_LIMITS_H_
 
@@ -9,6 +9,13 @@
 #include "lacerta/decoder.h"
 
 namespace lacerta {
+
+// What they say to a base.
+inline Status CheckBaseFits(size_t num_vertices, size_t num_triangles, const DecodeLimits& limits) {
+  if (num_vertices <= limits.max_vertices && num_triangles <= limits.max_triangles) return Status();
+  return LimitExceeded("the base mesh (" + std::to_string(num_vertices) + " vertices, " + std::to_string(num_triangles) +
+                       " triangles) is over the decode limits");
+}
 
 // Fails with kLimitExceeded where `level`, the next finer one than `t`, has more vertices or triangles than allowed.
 // num_still: triangles that no level splits

@@ -24,10 +24,7 @@ namespace lacerta {
 namespace {
 
 Status CheckBase(const BaseMesh& base, const DecodeLimits& limits) {
-  if (base.lattice.size() > limits.max_vertices || base.triangles.size() > limits.max_triangles) {
-    return LimitExceeded("the base mesh (" + std::to_string(base.lattice.size()) + " vertices, " +
-                         std::to_string(base.triangles.size()) + " triangles) is over the decode limits");
-  }
+  LACERTA_RETURN_IF_ERROR(CheckBaseFits(base.lattice.size(), base.triangles.size(), limits));
   if (!(base.step > 0) || !std::isnormal(base.step))
     return InvalidData("the step of the base mesh is not a positive number");
   for (size_t v = 0; v < base.lattice.size(); ++v) {

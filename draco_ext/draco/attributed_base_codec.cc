@@ -189,14 +189,14 @@ class GroupEncoder {
   std::vector<std::pair<int, int>> octahedral_;  // Draco attribute, bits
 };
 
-StatusOr<VertexSoup::Attribute> ReadAttribute(const draco::Mesh& mesh, const draco::PointAttribute& from, const AttributeLattice& precision) {
-  const uint32_t n = precision.components;
-  if (from.num_components() != static_cast<int>(n) || from.data_type() != draco::DT_FLOAT32 || from.byte_stride() < static_cast<int64_t>(n * sizeof(float)))
-    return InvalidData("attribute " + precision.name + " of the base is not of " + std::to_string(n) + " floats");
-  VertexSoup::Attribute result{precision.name, precision.kind, n, std::vector<float>(size_t{n} * mesh.num_points())};
+StatusOr<VertexSoup::Attribute> ReadAttribute(const draco::Mesh& mesh, const draco::PointAttribute& from, const std::string& name) {
+  const auto n = static_cast<uint32_t>(from.num_components());
+  if (n == 0 || from.data_type() != draco::DT_FLOAT32 || from.byte_stride() < static_cast<int64_t>(n * sizeof(float)))
+    return InvalidData("attribute " + name + " of the base is not of floats");
+  VertexSoup::Attribute result{name, AttributeKind::kGeneric, n, std::vector<float>(size_t{n} * mesh.num_points())};
   for (uint32_t v = 0; v < mesh.num_points(); ++v) {
     const draco::AttributeValueIndex index = from.mapped_index(draco::PointIndex(v));
-    if (index.value() >= from.size()) return InvalidData("a value of attribute " + precision.name + " is missing in the base");
+    if (index.value() >= from.size()) return InvalidData("a value of attribute " + name + " is missing in the base");
     std::memcpy(&result.values[size_t{n} * v], from.GetAddress(index), n * sizeof(float));
   }
   return result;
@@ -270,15 +270,28 @@ StatusOr<CodedAttributedBase> EncodeAttributedBase(const AttributedBase& base) {
   return result;
 }
 
-StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributeLattice>& precision, const DecodeLimits& limits) {
+StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<std::string>& names, const DecodeLimits& limits) {
   LACERTA_ASSIGN_OR_RETURN(const StockMesh stock, DecodeStockStream(stream, limits));
   LACERTA_ASSIGN_OR_RETURN(TriangleMesh mesh, FromDracoMesh(*stock.mesh));
   VertexSoup soup{std::move(mesh.positions), std::move(mesh.triangles), {}};
-  for (size_t i = 0; i < precision.size(); ++i) {
+  for (size_t i = 0; i < names.size(); ++i) {
     const draco::PointAttribute* const from = stock.mesh->GetAttributeByUniqueId(static_cast<uint32_t>(i + 1));
     if (from == nullptr) continue;
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute attribute, ReadAttribute(*stock.mesh, *from, precision[i]));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute attribute, ReadAttribute(*stock.mesh, *from, names[i]));
     soup.attributes.push_back(std::move(attribute));
+  }
+  return soup;
+}
+
+StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributeLattice>& precision, const DecodeLimits& limits) {
+  std::vector<std::string> names;
+  for (const AttributeLattice& p : precision) names.push_back(p.name);
+  LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, DecodeAttributedGroup(stream, names, limits));
+  for (VertexSoup::Attribute& attribute : soup.attributes) {
+    const auto of = std::find_if(precision.begin(), precision.end(), [&](const AttributeLattice& p) { return p.name == attribute.name; });
+    if (of->components != attribute.components)
+      return InvalidData("attribute " + attribute.name + " of the base is not of " + std::to_string(of->components) + " floats");
+    attribute.kind = of->kind;
   }
   return soup;
 }

@@ -2,6 +2,7 @@
 #ifndef LACERTA_DRACO_ATTRIBUTED_BASE_CODEC_H_
 #define LACERTA_DRACO_ATTRIBUTED_BASE_CODEC_H_
 
+#include <string>
 #include <vector>
 
 #include "encoder/level_order.h"
@@ -24,8 +25,11 @@ struct CodedAttributedBase {
 StatusOr<CodedAttributedBase> EncodeAttributedBase(const AttributedBase& base);
 
 // The soup in the stock Draco mesh stream at the front of `stream`, with those of the attributes, in the order of the refinement header,
-// that are in it. Safe on untrusted bytes as DecodeStockStream is.
+// that are in it. Safe on untrusted bytes as DecodeStockStream is. Fails with kInvalidData, too, where an attribute is not of floats or
+// has not the components that `precision` tells.
 StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributeLattice>& precision, const DecodeLimits& limits);
+// The same where only the names are known: kinds are generic, components whatever the stream has.
+StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<std::string>& names, const DecodeLimits& limits);
 
 }  // namespace lacerta
 

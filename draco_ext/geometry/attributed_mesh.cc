@@ -123,47 +123,6 @@ void WeldExactly(AttributedMesh* mesh) {
   for (MeshAttribute& attribute : mesh->attributes) WeldRows(attribute.components, &attribute.values, &attribute.corners);
 }
 
-std::vector<VertexSoup> SplitIntoSoups(const AttributedMesh& mesh, uint32_t num_groups) {
-  std::vector<std::vector<uint32_t>> faces(num_groups);
-  for (uint32_t f = 0; f < mesh.surface.triangles.size(); ++f) faces[mesh.GroupOf(f)].push_back(f);
-  std::vector<VertexSoup> soups(num_groups);
-  for (uint32_t g = 0; g < num_groups; ++g) {
-    VertexSoup& soup = soups[g];
-    if (faces[g].empty()) continue;
-    std::vector<const MeshAttribute*> present;
-    for (const MeshAttribute& attribute : mesh.attributes) {
-      if (attribute.corners[faces[g].front()][0] == kNone) continue;
-      present.push_back(&attribute);
-      soup.attributes.push_back({attribute.name, attribute.kind, attribute.components, {}});
-    }
-    std::vector<uint32_t> tuples;  // per corner: its vertex and the rows of its values
-    const size_t columns = 1 + present.size();
-    tuples.reserve(3 * faces[g].size() * columns);
-    for (const uint32_t f : faces[g]) {
-      for (size_t k = 0; k < 3; ++k) {
-        tuples.push_back(mesh.surface.triangles[f][k]);
-        for (const MeshAttribute* attribute : present) tuples.push_back(attribute->corners[f][k]);
-      }
-    }
-    std::vector<uint32_t> number = FirstEqualRow(Span<const uint32_t>(tuples), columns);
-    for (uint32_t corner = 0; corner < number.size(); ++corner) {
-      if (number[corner] != corner) {
-        number[corner] = number[number[corner]];
-        continue;
-      }
-      const uint32_t* tuple = tuples.data() + corner * columns;
-      number[corner] = static_cast<uint32_t>(soup.positions.size());
-      soup.positions.push_back(mesh.surface.positions[tuple[0]]);
-      for (size_t a = 0; a < present.size(); ++a) {
-        const auto row = present[a]->values.begin() + static_cast<std::ptrdiff_t>(size_t{tuple[1 + a]} * present[a]->components);
-        soup.attributes[a].values.insert(soup.attributes[a].values.end(), row, row + present[a]->components);
-      }
-    }
-    for (size_t i = 0; i < number.size(); i += 3) soup.triangles.push_back({number[i], number[i + 1], number[i + 2]});
-  }
-  return soups;
-}
-
 Status CheckAttributedMesh(const AttributedMesh& mesh) {
   const size_t num_faces = mesh.surface.triangles.size(), num_vertices = mesh.surface.positions.size();
   for (size_t f = 0; f < num_faces; ++f) {

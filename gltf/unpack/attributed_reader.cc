@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "document/draco_primitive.h"
 #include "draco/attributed_base_codec.h"
 #include "lacerta/attributed_base.h"
 #include "lacerta/decoder.h"
@@ -41,20 +40,7 @@ StatusOr<std::vector<VertexSoup>> DecodeBases(const std::vector<Span<const uint8
                                               const ProgressiveStream& announced, const DecodeLimits& limits) {
   std::vector<VertexSoup> bases;
   for (const Span<const uint8_t> part : parts) {
-    LACERTA_ASSIGN_OR_RETURN(const Primitive positions, DecodeDracoPrimitive(part, {{"POSITION", 0}}, limits));
-    VertexSoup base;
-    base.positions = Surface(positions).positions;
-    base.triangles = positions.triangles;
-    for (size_t a = 0; a < announced.attributes.size(); ++a) {
-      const std::string& name = announced.attributes[a];
-      const StatusOr<Primitive> read = DecodeDracoPrimitive(part, {{name, static_cast<uint32_t>(a + 1)}}, limits);
-      if (!read.ok()) continue;
-      const AccessorData& data = read.value().attributes[0].data;
-      base.attributes.push_back({name, AttributeKind::kGeneric, data.components, {}});
-      for (uint64_t v = 0; v < data.count; ++v) {
-        for (uint32_t c = 0; c < data.components; ++c) base.attributes.back().values.push_back(data.Float(v, c));
-      }
-    }
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup base, DecodeAttributedGroup(part, announced.attributes, limits));
     bases.push_back(std::move(base));
   }
   return bases;

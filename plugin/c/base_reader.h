@@ -4,7 +4,10 @@
 #define LACERTA_PLUGIN_C_BASE_READER_H_
 
 #include <cstddef>
+#include <string>
+#include <vector>
 
+#include "lacerta/attributed_mesh.h"
 #include "lacerta/decoder.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
@@ -19,6 +22,8 @@ struct StockBase {
 bool CanReadStockBase();
 // Fails with kInvalidData where the bytes end too early or are damaged. Only where CanReadStockBase().
 StatusOr<StockBase> ReadStockBase(Span<const uint8_t> bytes, const DecodeLimits& limits);
+// The Draco stream of one group of a base with attributes: those of `names` that the group has. Fails as ReadStockBase does.
+StatusOr<VertexSoup> ReadStockGroup(Span<const uint8_t> bytes, const std::vector<std::string>& names, const DecodeLimits& limits);
 
 }  // namespace lacerta
 

@@ -2,16 +2,19 @@
 #include "lacerta.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base_reader.h"
 #include "caller_allocator.h"
-#include "decoder/smooth_normals.h"
+#include "caller_data.h"
 #include "stream_decoder.h"
 
 using lacerta::CallerAllocator;
@@ -83,38 +86,22 @@ lacerta_result NeedsBaseOr(lacerta_result result, lacerta_decoder* decoder) {
   return decoder->stream.needs_base() ? LACERTA_NEEDS_BASE : LACERTA_OK;
 }
 
-// Whether a struct of the caller is one of this version or newer. All fields so far are of the first version.
+// Whether a struct of the caller is one of this version or newer. All fields so far are of the first version, but for the options'.
 template <typename Struct>
 bool IsSized(const Struct* value) {
   return value != nullptr && value->struct_size >= sizeof(Struct);
 }
+constexpr size_t kFirstOptionsSize = offsetof(lacerta_decoder_options, base_lengths);
 
 Status BadStruct(const char* name) {
   return lacerta::InvalidArgument(std::string(name) + " is NULL or its struct_size is not set; use the macro beside the struct");
 }
 
-Status CheckGroup(uint32_t group) {
-  if (group == 0 || group == LACERTA_ALL_GROUPS) return Status();
-  return lacerta::InvalidArgument("group " + std::to_string(group) + " is not there; the stream has one group");
-}
-
-Status WriteMesh(const lacerta::LevelView& view, const lacerta_mesh_buffers& buffers) {
-  if (buffers.max_vertices < view.positions.size() || buffers.max_triangles < view.triangles.size()) {
-    return lacerta::InvalidArgument("the buffers are too small: the mesh has " + std::to_string(view.positions.size()) + " vertices and " +
-                                    std::to_string(view.triangles.size()) + " triangles");
-  }
-  if (buffers.positions != nullptr) std::memcpy(buffers.positions, view.positions.data(), view.positions.size() * sizeof(lacerta::Vec3f));
-  if (buffers.indices != nullptr) std::memcpy(buffers.indices, view.triangles.data(), view.triangles.size() * sizeof(lacerta::Triangle));
-  if (buffers.normals != nullptr) {
-    const std::vector<lacerta::Vec3f> normals = lacerta::SmoothNormals(view.positions, view.triangles);
-    std::memcpy(buffers.normals, normals.data(), normals.size() * sizeof(lacerta::Vec3f));
-  }
-  return Status();
+std::optional<size_t> GroupOf(uint32_t group) {
+  return group == LACERTA_ALL_GROUPS ? std::nullopt : std::optional<size_t>(group);
 }
 
 }  // namespace
-
-static_assert(sizeof(lacerta::Vec3f) == 3 * sizeof(float) && sizeof(lacerta::Triangle) == 3 * sizeof(uint32_t), "copied as they are");
 
 uint32_t lacerta_version(void) { return LACERTA_VERSION_MAJOR << 16 | LACERTA_VERSION_MINOR << 8 | LACERTA_VERSION_PATCH; }
 
@@ -137,9 +124,12 @@ const char* lacerta_result_name(lacerta_result result) {
 lacerta_result lacerta_decoder_create(const lacerta_decoder_options* options, lacerta_decoder** decoder) {
   if (decoder == nullptr) return LACERTA_INVALID_ARGUMENT;
   *decoder = nullptr;
-  const lacerta_decoder_options defaults = LACERTA_DECODER_OPTIONS_INIT;
-  if (options == nullptr) options = &defaults;
-  if (!IsSized(options)) return LACERTA_INVALID_ARGUMENT;
+  lacerta_decoder_options given = LACERTA_DECODER_OPTIONS_INIT;
+  if (options != nullptr) {
+    if (options->struct_size < kFirstOptionsSize) return LACERTA_INVALID_ARGUMENT;
+    std::memcpy(&given, options, std::min<size_t>(options->struct_size, sizeof(given)));
+  }
+  options = &given;
   const lacerta_allocator& allocator = options->allocator != nullptr ? *options->allocator : kDefaultAllocator;
   if (allocator.allocate == nullptr || allocator.deallocate == nullptr) return LACERTA_INVALID_ARGUMENT;
   lacerta::StreamDecoder::Options stream;
@@ -148,6 +138,7 @@ lacerta_result lacerta_decoder_create(const lacerta_decoder_options* options, la
   if (options->max_triangles != 0) stream.refinement.limits.max_triangles = options->max_triangles;
   stream.base_size = options->base_size;
   return Guarded([&] {
+    if (!lacerta::ReadGroupOptions(*options, &stream.groups, &stream.base_size)) return LACERTA_INVALID_ARGUMENT;
     void* memory = allocator.allocate(allocator.user, sizeof(lacerta_decoder));
     if (memory == nullptr) return LACERTA_OUT_OF_MEMORY;
     *decoder = new (memory) lacerta_decoder(stream, CallerAllocator<uint8_t>(allocator));
@@ -184,17 +175,17 @@ lacerta_result lacerta_decoder_finish(lacerta_decoder* decoder, int32_t* level) 
 lacerta_result lacerta_decoder_set_base(lacerta_decoder* decoder, const float* positions, uint32_t num_vertices,
                                         const uint32_t* indices, uint32_t num_triangles) {
   return Locked(decoder, [&] {
-    if (positions == nullptr || indices == nullptr) return lacerta::InvalidArgument("positions or indices is NULL");
     lacerta::TriangleMesh base;
-    base.positions.resize(num_vertices);
-    std::memcpy(static_cast<void*>(base.positions.data()), positions, num_vertices * sizeof(lacerta::Vec3f));
-    base.triangles.resize(num_triangles);
-    std::memcpy(base.triangles.data(), indices, num_triangles * sizeof(lacerta::Triangle));
-    for (uint32_t i = 0; i < num_triangles; ++i) {
-      if (*std::max_element(base.triangles[i].begin(), base.triangles[i].end()) < num_vertices) continue;
-      return lacerta::InvalidArgument("triangle " + std::to_string(i) + " of the base has a vertex that is not there");
-    }
+    LACERTA_RETURN_IF_ERROR(lacerta::ReadBase(positions, num_vertices, indices, num_triangles, &base.positions, &base.triangles));
     return decoder->stream.SetBase(std::move(base));
+  });
+}
+
+lacerta_result lacerta_decoder_set_base_group(lacerta_decoder* decoder, uint32_t group, const lacerta_base_group* base) {
+  return Locked(decoder, [&]() -> Status {
+    if (!IsSized(base)) return BadStruct("base");
+    LACERTA_ASSIGN_OR_RETURN(lacerta::VertexSoup soup, lacerta::ReadBaseGroup(*base, decoder->stream.attribute_names()));
+    return decoder->stream.SetBaseGroup(group, std::move(soup));
   });
 }
 
@@ -218,8 +209,8 @@ lacerta_result lacerta_decoder_get_progress(lacerta_decoder* decoder, lacerta_pr
     progress->has_layers = stream.has_layers() ? 1 : 0;
     progress->is_complete = stream.is_complete() ? 1 : 0;
     progress->bytes_used = stream.bytes_used();
-    progress->num_groups = stream.level() < 0 ? 0 : 1;
-    progress->num_attributes = 0;
+    progress->num_groups = static_cast<uint32_t>(stream.num_groups());
+    progress->num_attributes = static_cast<uint32_t>(stream.attribute_names().size());
     return Status();
   });
 }
@@ -238,18 +229,23 @@ size_t lacerta_decoder_message(lacerta_decoder* decoder, char* text, size_t size
 lacerta_result lacerta_decoder_get_attribute(lacerta_decoder* decoder, uint32_t index, lacerta_attribute* attribute) {
   return Locked(decoder, [&] {
     if (!IsSized(attribute)) return BadStruct("attribute");
-    return lacerta::InvalidArgument("attribute " + std::to_string(index) + " is not there; the stream has positions alone");
+    const std::vector<std::string>& names = decoder->stream.attribute_names();
+    if (index >= names.size()) return lacerta::InvalidArgument("attribute " + std::to_string(index) + " is not there; the stream has " + std::to_string(names.size()));
+    attribute->components = decoder->stream.components_of(index);
+    std::memcpy(attribute->name, names[index].c_str(), names[index].size() + 1);
+    return Status();
   });
 }
 
 lacerta_result lacerta_decoder_get_mesh_size(lacerta_decoder* decoder, int32_t level, uint32_t group, lacerta_mesh_size* mesh_size) {
   return Locked(decoder, [&]() -> Status {
     if (!IsSized(mesh_size)) return BadStruct("mesh_size");
-    LACERTA_RETURN_IF_ERROR(CheckGroup(group));
-    LACERTA_ASSIGN_OR_RETURN(const lacerta::LevelView view, decoder->stream.ViewOf(level));
+    LACERTA_ASSIGN_OR_RETURN(const lacerta::LevelView view, decoder->stream.ViewOf(level, GroupOf(group)));
     mesh_size->num_vertices = static_cast<uint32_t>(view.positions.size());
     mesh_size->num_triangles = static_cast<uint32_t>(view.triangles.size());
     mesh_size->attributes = 0;
+    const std::vector<std::string>& names = decoder->stream.attribute_names();
+    for (size_t i = 0; i < names.size(); ++i) mesh_size->attributes |= uint32_t{lacerta::AttributeOf(view, names[i]) != nullptr} << i;
     return Status();
   });
 }
@@ -257,9 +253,7 @@ lacerta_result lacerta_decoder_get_mesh_size(lacerta_decoder* decoder, int32_t l
 lacerta_result lacerta_decoder_read_mesh(lacerta_decoder* decoder, int32_t level, uint32_t group, const lacerta_mesh_buffers* buffers) {
   return Locked(decoder, [&]() -> Status {
     if (!IsSized(buffers)) return BadStruct("buffers");
-    LACERTA_RETURN_IF_ERROR(CheckGroup(group));
-    LACERTA_ASSIGN_OR_RETURN(const lacerta::LevelView view, decoder->stream.ViewOf(level));
-    return WriteMesh(view, *buffers);
+    return lacerta::WriteMesh(&decoder->stream, level, GroupOf(group), *buffers);
   });
 }
 

@@ -5,26 +5,15 @@
 #include <utility>
 
 #include "base_reader.h"
+#include "decoder/level_limits.h"
 #include "decoder/stream_reader.h"
 
 namespace lacerta {
-namespace {
-
-Status CheckBase(const TriangleMesh& base, const DecodeLimits& limits) {
-  if (base.positions.size() > limits.max_vertices || base.triangles.size() > limits.max_triangles) {
-    return LimitExceeded("the base mesh (" + std::to_string(base.positions.size()) + " vertices, " +
-                         std::to_string(base.triangles.size()) + " triangles) is over the decode limits");
-  }
-  return Status();
-}
-
-}  // namespace
-
 Status StreamDecoder::Append(Span<const uint8_t> bytes) {
   LACERTA_RETURN_IF_ERROR(failure_);
   if (finished_) return InvalidArgument("the stream was finished; later bytes are ignored");
   if (bytes.empty()) return Status();
-  shown_.reset();
+  shown_.Forget();
   if (decoder_) return failure_ = decoder_->Append(bytes);
   pending_.insert(pending_.end(), bytes.begin(), bytes.end());
   return failure_ = Advance();
@@ -36,27 +25,42 @@ Status StreamDecoder::Finish() {
   if (decoder_ || needs_base_) return Status();
   next_attempt_ = 0;  // a last time
   failure_ = Advance();
-  if (failure_.ok() && !base_ && !decoder_ && !needs_base_) {
+  if (failure_.ok() && !has_base() && !decoder_ && !needs_base_) {
     failure_ = InvalidData("the stream ends within its base: " + std::to_string(pending_.size()) + " bytes are there");
   }
   return failure_;
 }
 
-Status StreamDecoder::SetBase(TriangleMesh base) {
+Status StreamDecoder::CheckMaySetBase() const {
   LACERTA_RETURN_IF_ERROR(failure_);
-  if (base_ || decoder_ || (!pending_.empty() && !needs_base_)) {
-    return InvalidArgument("a base is set before the first byte, or when the decoder asks for one");
-  }
-  LACERTA_RETURN_IF_ERROR(CheckBase(base, options_.refinement.limits));
-  shown_.reset();
+  if (!has_base() && !decoder_ && (pending_.empty() || needs_base_)) return Status();
+  return InvalidArgument("a base is set before the first byte, or when the decoder asks for one");
+}
+
+Status StreamDecoder::SetBase(TriangleMesh base) {
+  LACERTA_RETURN_IF_ERROR(CheckMaySetBase());
+  if (is_grouped()) return InvalidArgument("a stream with attributes has a base for each group");
+  LACERTA_RETURN_IF_ERROR(CheckBaseFits(base.positions.size(), base.triangles.size(), options_.refinement.limits));
   base_ = std::move(base);
-  const bool asked_for = std::exchange(needs_base_, false);
-  base_passed_ = false;
-  return failure_ = asked_for ? Advance() : Status();
+  return failure_ = std::exchange(needs_base_, false) ? Advance() : Status();
+}
+
+Status StreamDecoder::SetBaseGroup(size_t group, VertexSoup base) {
+  LACERTA_RETURN_IF_ERROR(CheckMaySetBase());
+  const size_t count = options_.groups.sizes.size();
+  groups_.resize(count);
+  is_group_set_.resize(count);
+  if (group >= count || is_group_set_[group] != 0) return InvalidArgument("base " + std::to_string(group) + " is set already, or the stream has no such group");
+  LACERTA_RETURN_IF_ERROR(AddGroup(base, options_.groups, options_.refinement.limits, &totals_));
+  groups_[group] = std::move(base);
+  is_group_set_[group] = 1;
+  if (++num_groups_set_ < count) return Status();
+  return failure_ = std::exchange(needs_base_, false) ? Advance() : Status();
 }
 
 Span<const uint8_t> StreamDecoder::base_section() const {
   if (!needs_base_) return {};
+  if (is_grouped()) return pending().First(static_cast<size_t>(options_.base_size));
   const auto section = FindBaseSection(pending());
   if (!section.ok() || !section.value()) return {};
   const size_t begin = section.value()->begin;
@@ -65,9 +69,9 @@ Span<const uint8_t> StreamDecoder::base_section() const {
 }
 
 Status StreamDecoder::Advance() {
-  if (!base_) LACERTA_RETURN_IF_ERROR(TakeBase());
-  if (base_ && !base_passed_) LACERTA_RETURN_IF_ERROR(TakeHostBase());
-  if (base_ && base_passed_ && !decoder_ && !pending_.empty()) LACERTA_RETURN_IF_ERROR(TakeStep());
+  if (!has_base()) LACERTA_RETURN_IF_ERROR(is_grouped() ? TakeGroups() : TakeBase());
+  if (has_base() && !base_passed_) LACERTA_RETURN_IF_ERROR(TakeHostBase());
+  if (has_base() && base_passed_ && !decoder_ && !pending_.empty()) LACERTA_RETURN_IF_ERROR(TakeStep());
   return Status();
 }
 
@@ -109,6 +113,19 @@ Status StreamDecoder::TakeStockBase(const BaseSection& section) {
   return Status();
 }
 
+Status StreamDecoder::TakeGroups() {
+  if (pending_.size() < options_.base_size) return Status();
+  if (!CanReadStockBase()) {
+    needs_base_ = true;
+    return Status();
+  }
+  LACERTA_ASSIGN_OR_RETURN(groups_, ReadGroups(pending(), options_.groups, options_.refinement.limits, &totals_));
+  num_groups_set_ = groups_.size();
+  Drop(static_cast<size_t>(options_.base_size));
+  base_passed_ = true;
+  return Status();
+}
+
 // Passes over the base section that the host has decoded.
 Status StreamDecoder::TakeHostBase() {
   const auto section = FindBaseSection(pending());
@@ -131,15 +148,20 @@ Status StreamDecoder::TakeHostBase() {
 
 Status StreamDecoder::TakeStep() {
   if (has_offset_) return InvalidData("a refinement follows a base that lies on no lattice");
-  LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadHeader> read,
-                           ReadRefinementHeader(pending(), MaxTagBytes(base_->positions.size(), base_->triangles.size())));
+  const uint64_t max_tag_bytes = base_ ? MaxTagBytes(base_->positions.size(), base_->triangles.size()) : MaxTagBytes(totals_.vertices, totals_.triangles);
+  LACERTA_ASSIGN_OR_RETURN(const std::optional<ReadHeader> read, ReadRefinementHeader(pending(), max_tag_bytes));
   if (!read) return Status();
+  if (is_grouped()) {
+    LACERTA_ASSIGN_OR_RETURN(const AttributedBase base, BaseOfGroups(groups_, options_.groups, read->header));
+    return StartRefinement(base);
+  }
   if (read->header.base_step == 0) return InvalidData("neither the base mesh nor the refinement header tells the step of the base lattice");
   LACERTA_ASSIGN_OR_RETURN(const BaseMesh base, BaseMeshFromPositions(*base_, read->header.base_step));
   return StartRefinement(base);
 }
 
-Status StreamDecoder::StartRefinement(const BaseMesh& base) {
+template <typename Base>
+Status StreamDecoder::StartRefinement(const Base& base) {
   LACERTA_ASSIGN_OR_RETURN(decoder_, ProgressiveDecoder::Create(base, options_.refinement));
   base_.reset();
   const Status status = decoder_->Append(pending());
@@ -153,7 +175,7 @@ void StreamDecoder::Drop(size_t size) {
   pending_.erase(pending_.begin(), pending_.begin() + static_cast<ptrdiff_t>(size));
 }
 
-int StreamDecoder::level() const { return decoder_ ? decoder_->level() : base_ ? 0 : -1; }
+int StreamDecoder::level() const { return decoder_ ? decoder_->level() : has_base() ? 0 : -1; }
 
 int StreamDecoder::num_levels() const {
   if (decoder_ && decoder_->num_levels() > 0) return decoder_->num_levels();
@@ -166,21 +188,24 @@ bool StreamDecoder::is_complete() const {
   return level() == 0 && failure_.ok() && only_base;
 }
 
-StatusOr<LevelView> StreamDecoder::ViewOf(int level) {
+StatusOr<LevelView> StreamDecoder::ViewOf(int level, std::optional<size_t> group) {
   if (level < 0 || level > this->level()) {
     return InvalidArgument("level " + std::to_string(level) + " is not there; the finest complete one is " + std::to_string(this->level()));
   }
-  if (!decoder_) return LevelView{base_->positions, base_->triangles};
-  const bool is_finest = level == decoder_->level();
-  if (!shown_ || shown_level_ != level) {
-    if (is_finest) {
-      shown_ = TriangleMesh{{}, decoder_->Triangles()};
-    } else {
-      LACERTA_ASSIGN_OR_RETURN(shown_, MeshAtLevel(decoder_->mesh(), level));
-    }
-    shown_level_ = level;
+  if (group && *group >= num_groups()) {
+    return InvalidArgument("group " + std::to_string(*group) + " is not there; the stream has " + std::to_string(num_groups()));
   }
-  return LevelView{is_finest ? decoder_->mesh().positions : shown_->positions, shown_->triangles};
+  if (!is_grouped()) {
+    if (decoder_) return shown_.Plain(*decoder_, level);
+    return LevelView{base_->positions, base_->triangles};
+  }
+  const std::vector<VertexSoup>* groups = &groups_;
+  if (level > 0) {
+    LACERTA_ASSIGN_OR_RETURN(groups, shown_.Groups(*decoder_, level, num_groups()));
+  }
+  if (!group) joined_ = JoinedGroups(*groups);
+  const VertexSoup& soup = group ? (*groups)[*group] : joined_;
+  return LevelView{soup.positions, soup.triangles, &soup.attributes};
 }
 
 }  // namespace lacerta

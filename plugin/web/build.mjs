@@ -16,17 +16,18 @@ const maxGzipped = 60_000;  // bytes of all that a page may load
 
 const folders = ['draco_ext/common', 'draco_ext/decoder'];
 const sources = folders.flatMap(folder => readdirSync(join(root, folder)).filter(name => name.endsWith('.cc')).map(name => join(root, folder, name)));
-for (const name of ['base_section', 'lacerta', 'no_draco_base_reader', 'stream_decoder']) sources.push(join(root, 'plugin/c', `${name}.cc`));
+for (const name of ['base_section', 'caller_data', 'group_base', 'lacerta', 'no_draco_base_reader', 'shown_level', 'stream_decoder']) sources.push(join(root, 'plugin/c', `${name}.cc`));
 sources.unshift(join(here, 'wasm/hot_paths.cc'), join(here, 'wasm/cosine.cc'));  // first: its instances are taken
 
 // Where the time goes; all else is built for size.
-const forSpeed = new Set(['hot_paths', 'butterfly', 'coefficient_coding', 'subdivision', 'synthesis']);
+const forSpeed = new Set(['hot_paths', 'synthesis']);
 const includes = ['draco_ext', 'draco_ext/include', 'plugin/c', 'plugin/c/include'].map(folder => `-I${join(root, folder)}`);
-const flags = ['-std=c++17', '-DNDEBUG', '-DLACERTA_TERSE', '-fno-exceptions', '-fno-rtti', '-flto', '-mbulk-memory', '-msign-ext', '-mnontrapping-fptoint',
+const flags = ['-std=c++17', '-DNDEBUG', '-DLACERTA_TERSE', '-fno-exceptions', '-fno-rtti', '-flto', '-mbulk-memory', '-msign-ext', '-mnontrapping-fptoint', '-fno-math-errno',
   '-ffp-contract=off'];  // the floats of every other build
 
-const exported = [...readFileSync(join(root, 'plugin/c/include/lacerta.h'), 'utf8').matchAll(/^LACERTA_API .*?\b(lacerta_\w+)\(/gm)].map(match => `_${match[1]}`);
-const linking = ['-O2', '--no-entry', '-sSTANDALONE_WASM=1', '-sALLOW_MEMORY_GROWTH=1', '-sMALLOC=emmalloc', '-sTOTAL_STACK=262144',
+// Of the functions of lacerta.h those that JavaScript calls.
+const exported = new Set([...readFileSync(join(here, 'src/decoder.js'), 'utf8').matchAll(/\.(lacerta_\w+)\(/g)].map(match => `_${match[1]}`));
+const linking = ['-Oz', '--no-entry', '-sSTANDALONE_WASM=1', '-sALLOW_MEMORY_GROWTH=1', '-sMALLOC=emmalloc', '-sTOTAL_STACK=262144',
   `-sEXPORTED_FUNCTIONS=${[...exported, '_malloc', '_free'].join(',')}`];
 
 const run = promisify(execFile);
@@ -61,7 +62,9 @@ for (const name of readdirSync(join(here, 'src'))) {
   if (name.endsWith('.js')) writeFileSync(to, transformSync(readFileSync(from, 'utf8'), {minify: true, format: 'esm', target: 'es2022'}).code);
   else copyFileSync(from, to);
 }
-await run('em++', [...flags, ...linking, ...await compileAll(), '-o', join(dist, 'lacerta.wasm')]);
+await run('em++', [...flags, ...linking, ...await compileAll(), '-o', join(objects, 'lacerta.wasm')]);
+// Once more, until nothing comes off. The optimizer comes with Emscripten.
+await run('wasm-opt', ['-Oz', '--converge', '--enable-bulk-memory', '--enable-sign-ext', '--enable-nontrapping-float-to-int', join(objects, 'lacerta.wasm'), '-o', join(dist, 'lacerta.wasm')]);
 const wasm = readFileSync(join(dist, 'lacerta.wasm'));
 // Deflated, then as base64: what comes over the wire is as small as the separate file.
 writeFileSync(join(dist, 'binary.js'), `// Made by build.mjs: lacerta.wasm, deflated.\nexport default '${deflateRawSync(wasm, {level: 9}).toString('base64')}';\n`);

@@ -109,6 +109,7 @@ export async function show(url, {mode = byId('mode').value, name = url} = {}) {
       byId('progress').value = detail.received / detail.total;
       readOut(model, name);
     });
+    byId('problem').textContent = model.problems.join('\n');
     model.addEventListener('problem', ({detail}) => { byId('problem').textContent = detail.message; });
     model.surfaces.forEach(surface => surface.part >= 0 && window.history_of_levels.push({level: surface.part, error: surface.stream.errors[surface.part], milliseconds: performance.now() - started}));
     byId('progress').value = model.received / model.total;

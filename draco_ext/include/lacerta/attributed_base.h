@@ -43,6 +43,8 @@ StatusOr<AttributedBase> AttributedBaseFromSoups(const std::vector<VertexSoup>& 
 // The mesh of one level (0 = base) with its attributes; above the base, the still triangles come last. Not welded, and rows that no
 // triangle of the level uses may be there. Fails as MeshAtLevel does, and with kInvalidData where a wedge mesh does not fit.
 StatusOr<AttributedMesh> AttributedMeshAtLevel(const AttributedSemiRegularMesh& mesh, int level);
+// The same of what a decoder has; its finest level comes without making all levels anew.
+StatusOr<AttributedMesh> AttributedMeshAtLevel(const ProgressiveDecoder& decoder, int level);
 
 }  // namespace lacerta
 

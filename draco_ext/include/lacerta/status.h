@@ -3,9 +3,9 @@
 #define LACERTA_STATUS_H_
 
 #include <cassert>
+#include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 
 namespace lacerta {
 
@@ -21,6 +21,7 @@ enum class StatusCode {
 };
 
 // Result of an operation: a code and, when not ok, a message that names what was wrong and what to do about it.
+#ifndef LACERTA_TERSE
 class [[nodiscard]] Status {
  public:
   Status() = default;
@@ -40,40 +41,55 @@ class [[nodiscard]] Status {
   std::string message_;
 };
 
-#ifdef LACERTA_TERSE
-// For builds where every byte counts, as in WebAssembly: no texts, codes alone. The arguments are not even evaluated.
-inline Status TerseStatus(StatusCode code) { return {code, {}}; }
-#define InvalidArgument(...) TerseStatus(::lacerta::StatusCode::kInvalidArgument)
-#define InvalidData(...) TerseStatus(::lacerta::StatusCode::kInvalidData)
-#define Unsupported(...) TerseStatus(::lacerta::StatusCode::kUnsupported)
-#define LimitExceeded(...) TerseStatus(::lacerta::StatusCode::kLimitExceeded)
-#else
 inline Status InvalidArgument(std::string message) { return {StatusCode::kInvalidArgument, std::move(message)}; }
 inline Status InvalidData(std::string message) { return {StatusCode::kInvalidData, std::move(message)}; }
 inline Status Unsupported(std::string message) { return {StatusCode::kUnsupported, std::move(message)}; }
 inline Status LimitExceeded(std::string message) { return {StatusCode::kLimitExceeded, std::move(message)}; }
-#endif
 inline Status NotFound(std::string message) { return {StatusCode::kNotFound, std::move(message)}; }
 inline Status IoError(std::string message) { return {StatusCode::kIoError, std::move(message)}; }
 inline Status InternalError(std::string message) { return {StatusCode::kInternal, std::move(message)}; }
+#else
+// For builds where every byte counts, as in WebAssembly: a code alone. Texts are not even put together, hence the macros.
+class [[nodiscard]] Status {
+ public:
+  Status() = default;
+  explicit Status(StatusCode code) : code_(code) {}
+
+  bool ok() const { return code_ == StatusCode::kOk; }
+  StatusCode code() const { return code_; }
+  std::string message() const { return {}; }
+  const Status& AsItIs() const { return *this; }
+
+ private:
+  StatusCode code_ = StatusCode::kOk;
+};
+
+#define WithContext(...) AsItIs()
+#define InvalidArgument(...) Status(::lacerta::StatusCode::kInvalidArgument)
+#define InvalidData(...) Status(::lacerta::StatusCode::kInvalidData)
+#define Unsupported(...) Status(::lacerta::StatusCode::kUnsupported)
+#define LimitExceeded(...) Status(::lacerta::StatusCode::kLimitExceeded)
+#define InternalError(...) Status(::lacerta::StatusCode::kInternal)
+#endif
 
 // A value, or the status that says why there is none. The value may be taken only after ok() was seen.
 template <typename T>
 class [[nodiscard]] StatusOr {
  public:
-  StatusOr(T value) : content_(std::move(value)) {}                // NOLINT: implicit on purpose
-  StatusOr(Status status) : content_(std::move(status)) {          // NOLINT
-    assert(!std::get<Status>(content_).ok());
+  StatusOr(T value) : value_(std::move(value)) {}                  // NOLINT: implicit on purpose
+  StatusOr(Status status) : status_(std::move(status)) {           // NOLINT
+    assert(!status_.ok());
   }
 
-  bool ok() const { return std::holds_alternative<T>(content_); }
-  Status status() const { return ok() ? Status() : std::get<Status>(content_); }
-  const T& value() const& { return *std::get_if<T>(&content_); }
-  T& value() & { return *std::get_if<T>(&content_); }
-  T&& value() && { return std::move(*std::get_if<T>(&content_)); }
+  bool ok() const { return value_.has_value(); }
+  Status status() const { return status_; }
+  const T& value() const& { return *value_; }
+  T& value() & { return *value_; }
+  T&& value() && { return std::move(*value_); }
 
  private:
-  std::variant<Status, T> content_;
+  Status status_;  // two members, not one variant, whose code takes twice the bytes in WebAssembly
+  std::optional<T> value_;
 };
 
 #define LACERTA_CONCAT_INNER(a, b) a##b

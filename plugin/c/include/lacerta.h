@@ -75,8 +75,14 @@ typedef struct lacerta_decoder_options {
    * which takes longer for Draco bases that arrive in small pieces. */
   uint64_t base_size;
   const lacerta_allocator* allocator; /* NULL: malloc and free. Copied; only its `user` has to live on. */
+  /* Of a stream with attributes and groups, which only glTF tells ("baseLengths" and "attributes" of LACERTA_mesh_progressive): the bytes of
+   * each group's Draco stream, which together are the base section, and the names of the attributes, at most 32. Copied. NULL and 0 else. */
+  const uint64_t* base_lengths;
+  uint32_t num_groups;
+  uint32_t num_attributes;
+  const char* const* attribute_names;
 } lacerta_decoder_options;
-#define LACERTA_DECODER_OPTIONS_INIT {sizeof(lacerta_decoder_options), -1, 0, 0, 0, NULL}
+#define LACERTA_DECODER_OPTIONS_INIT {sizeof(lacerta_decoder_options), -1, 0, 0, 0, NULL, NULL, 0, 0, NULL}
 
 typedef struct lacerta_decoder lacerta_decoder;
 
@@ -102,6 +108,20 @@ LACERTA_API lacerta_result lacerta_decoder_finish(lacerta_decoder* decoder, int3
  * base_size is 0 the library looks for the refinement that fits, at the front of the stream or behind the base section. Refused with LACERTA_INVALID_ARGUMENT where there is a base already. */
 LACERTA_API lacerta_result lacerta_decoder_set_base(lacerta_decoder* decoder, const float* positions, uint32_t num_vertices,
                                                     const uint32_t* indices, uint32_t num_triangles);
+
+/* The same for a stream with attributes: the base of one group, as the host made it of that group's Draco stream. To be called once for each group. */
+typedef struct lacerta_base_group {
+  uint32_t struct_size;
+  uint32_t num_vertices;
+  uint32_t num_triangles;
+  uint32_t num_attributes;        /* entries of the following arrays */
+  const float* positions;         /* num_vertices x 3, model units */
+  const uint32_t* indices;        /* num_triangles x 3, < num_vertices */
+  const float* const* attributes; /* entry i: num_vertices x components[i] of attribute i, or NULL: the group has not got it */
+  const uint32_t* components;
+} lacerta_base_group;
+#define LACERTA_BASE_GROUP_INIT {sizeof(lacerta_base_group), 0, 0, 0, NULL, NULL, NULL, NULL}
+LACERTA_API lacerta_result lacerta_decoder_set_base_group(lacerta_decoder* decoder, uint32_t group, const lacerta_base_group* base);
 
 /* The base section for the host's Draco decoder: after LACERTA_NEEDS_BASE, complete where base_size was given or the stream is in custom
  * form; else as much as has come (Draco ignores what follows it). The bytes are valid until the next call with this decoder. */
@@ -130,19 +150,21 @@ LACERTA_API size_t lacerta_decoder_message(lacerta_decoder* decoder, char* text,
 
 typedef struct lacerta_attribute {
   uint32_t struct_size;
-  uint32_t components;  /* floats per vertex */
+  uint32_t components;  /* floats per vertex; 0 while there is no base, or where no group has it */
   char name[64];        /* as in glTF: "TEXCOORD_0", ...; ended by a zero */
 } lacerta_attribute;
 #define LACERTA_ATTRIBUTE_INIT {sizeof(lacerta_attribute), 0, {0}}
+/* index: below num_attributes of lacerta_progress, in the order of the options. */
 LACERTA_API lacerta_result lacerta_decoder_get_attribute(lacerta_decoder* decoder, uint32_t index, lacerta_attribute* attribute);
 
-/* The mesh of one group of faces, or of all of them as one, at one level. */
+/* The mesh of one group of faces, or of all of them as one, at one level. A vertex has one value of each attribute: the surface is cut along seams, and
+ * between groups, where vertices have the same positions bit by bit on every level. */
 #define LACERTA_ALL_GROUPS UINT32_MAX
 typedef struct lacerta_mesh_size {
   uint32_t struct_size;
   uint32_t num_vertices;
   uint32_t num_triangles;
-  uint32_t attributes; /* bit i: the group has got attribute i */
+  uint32_t attributes; /* bit i: the group, or one of all, has got attribute i */
 } lacerta_mesh_size;
 #define LACERTA_MESH_SIZE_INIT {sizeof(lacerta_mesh_size), 0, 0, 0}
 /* level: 0 to the finest complete one; asking for the latter is the quickest. */
@@ -158,7 +180,7 @@ typedef struct lacerta_mesh_buffers {
   float* positions;        /* num_vertices x 3, model units */
   float* normals;          /* num_vertices x 3, of length 1: smooth, weighted by corner angles, whole surface considered */
   uint32_t* indices;       /* num_triangles x 3, < num_vertices, counterclockwise seen from outside */
-  float* const* attributes; /* entry i: num_vertices x components of attribute i, or NULL */
+  float* const* attributes; /* entry i: num_vertices x components of attribute i, or NULL; 0 where a group has not got it */
 } lacerta_mesh_buffers;
 #define LACERTA_MESH_BUFFERS_INIT {sizeof(lacerta_mesh_buffers), 0, 0, 0, NULL, NULL, NULL, NULL}
 /* Writes the mesh whose size lacerta_decoder_get_mesh_size tells. Fails with LACERTA_INVALID_ARGUMENT, and writes nothing, where the

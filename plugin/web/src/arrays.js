@@ -8,3 +8,14 @@ export function toFloats(attribute) {
   }
   return floats;
 }
+
+const kNames = {POSITION: 'position', NORMAL: 'normal', TANGENT: 'tangent', TEXCOORD_0: 'uv', COLOR_0: 'color', WEIGHTS_0: 'skinWeight', JOINTS_0: 'skinIndex'};
+/** What three.js calls an attribute of glTF. */
+export const nameInThree = name => kNames[name] ?? name.toLowerCase().replace(/^texcoord_(\d+)$/, 'uv$1');
+
+/** {positions, indices, attributes: {name: floats}} of a geometry; names: those of glTF that are wanted, if they are there. */
+export function toBase({attributes, index}, names) {
+  const present = names.filter(name => attributes[nameInThree(name)]);
+  return {positions: toFloats(attributes.position), indices: index.array,
+    attributes: Object.fromEntries(present.map(name => [name, toFloats(attributes[nameInThree(name)])]))};
+}

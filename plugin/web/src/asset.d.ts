@@ -7,6 +7,8 @@ export interface ProgressiveStream {
   min: number[];
   max: number[];
   normals?: 'smooth';
+  baseLengths?: number[];
+  attributes?: string[];
   segments: Segment[];
 }
 export interface Progressive {
@@ -15,5 +17,9 @@ export interface Progressive {
   streams: ProgressiveStream[];
   order: Segment[];
   length: number;
+  /** Bytes that the file holds of them; less than `length` where it was trimmed. */
+  available: number;
 }
 export function parseProgressive(json: object): Progressive | undefined;
+/** Where the Draco streams of a base section lie in it, one per group. */
+export function baseParts(stream: ProgressiveStream): {begin: number; end: number}[];

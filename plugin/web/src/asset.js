@@ -10,8 +10,9 @@ const areNumbers = (value, length) => Array.isArray(value) && value.length === l
 
 /**
  * Reads the extension at the root of a glTF document. Returns undefined where there is none, else
- * {data, refinements, streams: [{vertexCounts, triangleCounts, errors, min, max, normals, segments: [{offset, length}]}], order: [{stream, part,
- * offset, length}], length}; offsets are from the front of all segments. Throws where it contradicts itself.
+ * {data, refinements, streams: [{vertexCounts, triangleCounts, errors, min, max, normals, baseLengths, attributes, segments: [{offset, length}]}],
+ * order: [{stream, part, offset, length}], length, available: less where the asset was trimmed}; offsets are from the front of all segments. Throws
+ * where it contradicts itself.
  */
 export function parseProgressive(json) {
   const extension = json.extensions?.[extensionName];
@@ -37,14 +38,30 @@ export function parseProgressive(json) {
     offset += lengths[i];
     return segment;
   });
-  streams.forEach((stream, s) => demand(stream.segments.length === stream.errors.length, `stream ${s} has ${stream.segments.length} segments`));
-  return {data: extension.data, refinements: extension.refinements, streams, order, length: offset};
+  streams.forEach((stream, s) => {
+    demand(stream.segments.length === stream.errors.length, `stream ${s} has ${stream.segments.length} segments`);
+    const {baseLengths, attributes = []} = stream;
+    demand(baseLengths === undefined ? attributes.length === 0 : areIndices(baseLengths) && baseLengths.length > 0 && Array.isArray(attributes) &&
+      attributes.every(name => typeof name === 'string') && baseLengths.reduce((sum, length) => sum + length, 0) === stream.segments[0].length,
+    `the attributes or groups of stream ${s} are malformed`);
+  });
+  const views = [extension.data, extension.refinements].filter(view => view !== undefined).map(view => json.bufferViews[view].byteLength ?? Infinity);
+  return {data: extension.data, refinements: extension.refinements, streams, order, length: offset,
+    available: Math.min(offset, views.reduce((sum, bytes) => sum + bytes, 0))};
 }
 
-/** The extension of a primitive, {stream, group}, or undefined; throws where the stream does not exist. */
+/** The extension of a primitive, {stream, group}, or undefined; throws where the stream or group does not exist. */
 export function progressivePrimitive(primitive, progressive) {
   const extension = primitive.extensions?.[extensionName];
   if (extension === undefined || progressive === undefined) return undefined;
   demand(isIndex(extension.stream) && extension.stream < progressive.streams.length, `stream ${extension.stream} does not exist`);
-  return {stream: extension.stream, group: extension.group ?? 0};
+  const {stream, group = 0} = extension;
+  demand(isIndex(group) && group < (progressive.streams[stream].baseLengths?.length ?? 1), `group ${group} of stream ${stream} does not exist`);
+  return {stream, group};
+}
+
+/** Where the Draco streams of a base section lie in it: [{begin, end}], one per group. */
+export function baseParts(stream) {
+  let end = 0;
+  return (stream.baseLengths ?? [stream.segments[0].length]).map(length => ({begin: end, end: end += length}));
 }

@@ -3,12 +3,13 @@
 // Progressive meshes hang on their nodes as ProgressiveMesh, out of sight of transforms that edit vertices, which would tear stream and
 // fallback apart; nodes, materials and all else can be edited. Writing puts the same bytes back. toLevel() makes ordinary meshes of them.
 import {Extension, ExtensionProperty, PropertyType, RefMap} from '@gltf-transform/core';
-import {extensionName, parseProgressive, progressivePrimitive} from './asset.js';
+import {baseParts, extensionName, parseProgressive, progressivePrimitive} from './asset.js';
 import {Decoder, instantiate} from './decoder.js';
 import {compile} from './index.js';
 
 const kDraco = 'KHR_draco_mesh_compression';
 const kComponentBytes = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4};
+const kTypes = {1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4'};
 const kComponents = {SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT2: 4, MAT3: 9, MAT4: 16};
 
 /** All streams of a document: on its root. */
@@ -154,23 +155,25 @@ export class LacertaMeshProgressive extends Extension {
       return json.accessors.length - 1;
     };
     const baseViews = new Map();
-    const baseView = stream => {
-      if (!baseViews.has(stream)) {
-        const {offset, length} = progressive.streams[stream].segments[0], view = json.bufferViews[data];
-        json.bufferViews.push({buffer: view.buffer, byteOffset: (view.byteOffset ?? 0) + offset, byteLength: length});
-        baseViews.set(stream, json.bufferViews.length - 1);
+    const baseView = (stream, group) => {
+      const key = `${stream} ${group}`;
+      if (!baseViews.has(key)) {
+        const part = baseParts(progressive.streams[stream])[group], view = json.bufferViews[data];
+        const byteOffset = (view.byteOffset ?? 0) + progressive.streams[stream].segments[0].offset + part.begin;
+        json.bufferViews.push({buffer: view.buffer, byteOffset, byteLength: part.end - part.begin});
+        baseViews.set(key, json.bufferViews.length - 1);
       }
-      return baseViews.get(stream);
+      return baseViews.get(key);
     };
     const written = new Map(), uses = new Set();
     for (const node of this.document.getRoot().listNodes()) {
       const mesh = node.getExtension(extensionName);
       if (!mesh) continue;
       if (!written.has(mesh)) {
-        const primitives = mesh.getPrimitives().map(({def, stream, accessors, indices}, i) => {
+        const primitives = mesh.getPrimitives().map(({def, stream, group, accessors, indices}, i) => {
           const material = mesh.getMaterial(i), extensions = {...def.extensions};
           if (extensions[kDraco]) {
-            extensions[kDraco] = {...extensions[kDraco], bufferView: baseView(stream)};
+            extensions[kDraco] = {...extensions[kDraco], bufferView: baseView(stream, group)};
             uses.add(kDraco);
           }
           const {material: unused, ...rest} = def;
@@ -197,20 +200,32 @@ export class LacertaMeshProgressive extends Extension {
   }
 }
 
-// The base section as the host's Draco decodes it. module: of npm draco3d or draco3dgltf.
-function decodeBase(module, bytes) {
+// A Draco stream as the host's Draco decodes it: {positions, indices, attributes}. module: of npm draco3d or draco3dgltf; names: of the attributes
+// with the ids 1, 2, ...
+function decodeBase(module, bytes, names) {
   const decoder = new module.Decoder(), mesh = new module.Mesh(), buffer = new module.DecoderBuffer();
   try {
     buffer.Init(new Int8Array(bytes.buffer, bytes.byteOffset, bytes.length), bytes.length);
     const status = decoder.DecodeBufferToMesh(buffer, mesh);
     if (!status.ok()) throw new Error(`the base: ${status.error_msg()}`);
-    const points = mesh.num_points(), faces = mesh.num_faces(), memory = module._malloc(12 * Math.max(points, faces));
-    decoder.GetTrianglesUInt32Array(mesh, 12 * faces, memory);
-    const indices = new Uint32Array(module.HEAPU8.buffer, memory, 3 * faces).slice();
-    decoder.GetAttributeDataArrayForAllPoints(mesh, decoder.GetAttribute(mesh, decoder.GetAttributeId(mesh, module.POSITION)), module.DT_FLOAT32, 12 * points, memory);
-    const positions = new Float32Array(module.HEAPU8.buffer, memory, 3 * points).slice();
-    module._free(memory);
-    return {positions, indices};
+    const points = mesh.num_points(), faces = mesh.num_faces();
+    const take = (Type, count, fill) => {
+      const memory = module._malloc(4 * count);
+      fill(4 * count, memory);
+      const array = new Type(module.HEAPU8.buffer, memory, count).slice();
+      module._free(memory);
+      return array;
+    };
+    const floats = attribute => take(Float32Array, attribute.num_components() * points, (size, memory) => {
+      decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, module.DT_FLOAT32, size, memory);
+    });
+    const indices = take(Uint32Array, 3 * faces, (size, memory) => decoder.GetTrianglesUInt32Array(mesh, size, memory));
+    const positions = floats(decoder.GetAttribute(mesh, decoder.GetAttributeId(mesh, module.POSITION))), attributes = {};
+    for (let i = 0; i < mesh.num_attributes(); ++i) {
+      const attribute = decoder.GetAttribute(mesh, i), name = names[attribute.unique_id() - 1];
+      if (name !== undefined) attributes[name] = floats(attribute);
+    }
+    return {positions, indices, attributes};
   } finally {
     for (const object of [buffer, mesh, decoder]) module.destroy(object);
   }
@@ -233,12 +248,15 @@ export function toLevel({level = Infinity, draco3d} = {}) {
       if (!progressiveMesh) continue;
       if (!made.has(progressiveMesh)) {
         const mesh = document.createMesh(progressiveMesh.getName()).setExtras(progressiveMesh.getExtras());
-        progressiveMesh.getPrimitives().forEach(({stream}, i) => {
-          const {positions, normals, indices} = decoded[stream];
+        progressiveMesh.getPrimitives().forEach(({stream, group}, i) => {
+          const {positions, normals, indices, attributes} = decoded[stream][group];
           const accessor = (type, array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
           const primitive = document.createPrimitive().setMaterial(progressiveMesh.getMaterial(i)).setIndices(accessor('SCALAR', indices))
             .setAttribute('POSITION', accessor('VEC3', positions));
           if (normals) primitive.setAttribute('NORMAL', accessor('VEC3', normals));
+          for (const [name, values] of Object.entries(attributes)) {
+            primitive.setAttribute(name, accessor(kTypes[3 * values.length / positions.length], values));
+          }
           mesh.addPrimitive(primitive);
         });
         made.set(progressiveMesh, mesh);
@@ -250,18 +268,25 @@ export function toLevel({level = Infinity, draco3d} = {}) {
   };
 }
 
+// The meshes of a stream's groups.
 function decodeStream(wasm, stream, data, level, draco3d) {
-  const decoder = new Decoder(wasm, {baseSize: stream.segments[0].length, maxLevel: Number.isFinite(level) ? level : -1});
+  const {baseLengths, attributes = []} = stream;
+  const decoder = new Decoder(wasm, {baseSize: stream.segments[0].length, baseLengths, attributes, maxLevel: Number.isFinite(level) ? level : -1});
   try {
     for (const {offset, length} of stream.segments) {
       if (offset + length > data.length) break;  // trimmed
       decoder.append(data.subarray(offset, offset + length));
       if (!decoder.needsBase) continue;
       if (!draco3d) throw new Error(`${extensionName}: the base is in Draco form; give a draco3d decoder module`);
-      const {positions, indices} = decodeBase(draco3d, decoder.baseSection());
-      decoder.setBase(positions, indices);
+      const section = decoder.baseSection();
+      for (const [g, {begin, end}] of baseParts(stream).entries()) {
+        const base = decodeBase(draco3d, baseLengths ? section.subarray(begin, end) : section, attributes);
+        if (baseLengths) decoder.setBaseGroup(g, base);
+        else decoder.setBase(base.positions, base.indices);
+      }
     }
-    return decoder.read(decoder.progress().level, {normals: stream.normals === 'smooth'});
+    const {level: finest} = decoder.progress();
+    return baseLengths ? baseLengths.map((unused, group) => decoder.read(finest, {group})) : [decoder.read(finest, {normals: stream.normals === 'smooth'})];
   } finally {
     decoder.dispose();
   }

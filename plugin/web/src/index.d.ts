@@ -8,6 +8,9 @@ export interface DecoderOptions {
   maxTriangles?: number;
   /** Bytes of the base section, where they are known: glTF tells them. */
   baseSize?: number;
+  /** Of a stream with attributes and groups, from its JSON. */
+  baseLengths?: number[];
+  attributes?: string[];
 }
 export interface Progress {
   /** The finest complete level, 0 being the base; -1: no base yet. */
@@ -19,11 +22,26 @@ export interface Progress {
   hasLayers: boolean;
   isComplete: boolean;
   bytesUsed: number;
+  /** Of faces, one per material. */
+  numGroups: number;
 }
 export interface Mesh {
   positions: Float32Array;
   normals: Float32Array | null;
   indices: Uint32Array;
+  /** By their names in glTF; none for streams without. */
+  attributes: Record<string, Float32Array>;
+}
+export interface BaseGroup {
+  positions: ArrayLike<number>;
+  indices: ArrayLike<number>;
+  attributes?: Record<string, ArrayLike<number>>;
+}
+export interface ReadOptions {
+  /** Whether smooth normals are wanted, which follow from the shape. */
+  normals?: boolean;
+  /** Default: all groups as one. */
+  group?: number;
 }
 
 export class Decoder {
@@ -33,8 +51,9 @@ export class Decoder {
   needsBase: boolean;
   baseSection(): Uint8Array;
   setBase(positions: ArrayLike<number>, indices: ArrayLike<number>): void;
+  setBaseGroup(group: number, base: BaseGroup): void;
   progress(): Progress;
-  read(level: number, options?: {normals?: boolean}): Mesh;
+  read(level: number, options?: ReadOptions): Mesh;
   dispose(): void;
 }
 
@@ -44,8 +63,9 @@ export interface RemoteDecoder {
   append(bytes: Uint8Array): Promise<Progress>;
   finish(): Promise<Progress>;
   setBase(positions: ArrayLike<number>, indices: ArrayLike<number>): Promise<void>;
+  setBaseGroup(group: number, base: BaseGroup): Promise<void>;
   progress(): Promise<Progress>;
-  read(level: number, options?: {normals?: boolean}): Promise<Mesh>;
+  read(level: number, options?: ReadOptions): Promise<Mesh>;
   dispose(): void;
 }
 export interface PoolOptions {

@@ -65,8 +65,9 @@ class RemoteDecoder {
   }
   finish() { return this.#thread.ask('finish', undefined, this.#stream); }
   setBase(positions, indices) { return this.#thread.ask('setBase', {positions, indices}, this.#stream); }
+  setBaseGroup(group, base) { return this.#thread.ask('setBaseGroup', {group, base}, this.#stream); }
   progress() { return this.#thread.ask('progress', undefined, this.#stream); }
-  read(level, {normals = false} = {}) { return this.#thread.ask('read', {level, normals}, this.#stream); }
+  read(level, options) { return this.#thread.ask('read', {level, options}, this.#stream); }
 
   dispose() {
     if (!this.#thread) return;

@@ -44,6 +44,8 @@ export class ProgressiveModel extends EventTarget {
     await Promise.all(this.surfaces.map(surface => surface.begin()));
   }
 
+  /** Messages of all 'problem' events so far; a small file may have had its problem before anybody listens. */
+  get problems() { return [...this.#problems]; }
   get received() { return this.#feed.bytes; }
   get total() { return this.#progressive.length; }
   get signal() { return this.#abort.signal; }
@@ -65,7 +67,10 @@ export class ProgressiveModel extends EventTarget {
     if (this.#running || this.#feed.isWhole || !this.#source) return this.#running ?? Promise.resolve();
     if (this.signal.aborted) this.#abort = new AbortController();
     const {signal} = this;
-    return this.#running = this.#source(this, signal).catch(error => {
+    return this.#running = this.#source(this, signal).then(() => {
+      const {available} = this.#progressive;
+      if (this.received < available) throw new Error(`the file ends early: ${this.received} of ${available} bytes of the surfaces are there; the last good level stays`);
+    }).catch(error => {
       if (!signal.aborted) this.#problem(error.message);
     }).finally(() => { this.#running = undefined; });
   }

@@ -1,5 +1,6 @@
 // One stream on the screen: its decoder in a worker, the part that is shown, and the objects of three.js that show it.
-import {toFloats} from './arrays.js';
+import {nameInThree, toBase} from './arrays.js';
+import {baseParts} from './asset.js';
 
 const isCompact = bytes => bytes.length > 11 && bytes[8] === 0x4c && bytes[11] >> 4 === 1;
 // At most one new geometry per frame, but frames that take long, or none in a hidden page, hold nothing up.
@@ -21,20 +22,24 @@ export class Surface {
   #queue = Promise.resolve();  // of calls to the decoder that carry bytes
   #waiting = [];
 
-  /** options: {index, stream (of parseProgressive), objects: meshes, hasFallback, decodeBase, pool, three, onLevel, onProblem} */
+  /**
+   * options: {index, stream (of parseProgressive), groups: [{objects: meshes, hasFallback, attributes: names in glTF}] by group, decodeBase, pool, three,
+   * onLevel, onProblem}. A stream without attributes has one group.
+   */
   constructor(options) {
     this.#options = options;
     this.index = options.index;
     this.stream = options.stream;
+    this.objects = options.groups.flatMap(group => group.objects);
   }
 
-  get name() { return this.#options.objects[0]?.name || `surface ${this.index}`; }
+  get name() { return this.objects[0]?.name || `surface ${this.index}`; }
   get lastPart() { return this.stream.errors.length - 1; }
   get isComplete() { return this.part === this.lastPart; }
-  get objects() { return this.#options.objects; }
 
   async begin() {
-    this.#decoder = this.#options.pool.create({baseSize: this.stream.segments[0].length,
+    const {baseLengths, attributes} = this.stream;
+    this.#decoder = this.#options.pool.create({baseSize: this.stream.segments[0].length, baseLengths, attributes,
       maxVertices: this.#options.options?.maxVertices, maxTriangles: this.#options.options?.maxTriangles});
   }
 
@@ -88,17 +93,24 @@ export class Surface {
     for (const {reject} of this.#waiting.splice(0)) reject(new Error('disposed'));
   }
 
+  get #isGrouped() { return this.stream.baseLengths !== undefined; }
+
   async #setBase(bytes) {
-    const {objects, hasFallback, decodeBase} = this.#options;
-    if (hasFallback) {
-      const {geometry} = objects[0];
-      await this.#decoder.setBase(toFloats(geometry.attributes.position), geometry.index.array);
-    } else if (decodeBase) {
-      const {positions, indices} = await decodeBase(bytes);
-      await this.#decoder.setBase(positions, indices);
-    } else {
-      throw new Error('its base is a Draco stream, and no dracoLoader was given');
+    const {groups, decodeBase} = this.#options, parts = baseParts(this.stream);
+    for (const [g, {objects, hasFallback, attributes}] of groups.entries()) {
+      if (!hasFallback && !decodeBase) throw new Error('its base is a Draco stream, and no dracoLoader was given');
+      const names = this.stream.attributes ?? [], {begin, end} = parts[g];
+      const geometry = hasFallback ? objects[0].geometry : await decodeBase(bytes.slice(begin, end), names, attributes);
+      const base = toBase(geometry, names);
+      if (this.#isGrouped) await this.#decoder.setBaseGroup(g, base);
+      else await this.#decoder.setBase(base.positions, base.indices);
     }
+  }
+
+  // A mesh for each group.
+  async #read(level) {
+    if (!this.#isGrouped) return [await this.#decoder.read(level, {normals: this.stream.normals === 'smooth'})];
+    return Promise.all(this.#options.groups.map((unused, group) => this.#decoder.read(level, {group})));
   }
 
   // Levels are equal in their counts, states of quality layers are several per level.
@@ -114,14 +126,16 @@ export class Surface {
     if (target < 0 || target === this.part) return;
     this.#busy = true;
     try {
-      const level = this.#levelOf(target);
-      const mesh = await this.#decoder.read(level, {normals: this.stream.normals === 'smooth'});
-      if (mesh.positions.length !== 3 * this.stream.vertexCounts[target]) throw new Error('its levels are not those that the asset announces');
+      const meshes = await this.#read(this.#levelOf(target));
+      const count = name => meshes.reduce((sum, mesh) => sum + mesh[name].length / 3, 0), triangles = count('indices');
+      if (count('positions') !== this.stream.vertexCounts[target] || triangles !== this.stream.triangleCounts[target]) {
+        throw new Error('its levels are not those that the asset announces');
+      }
       await nextFrame();
       if (this.#disposed) return;
-      this.#replace(mesh);
+      meshes.forEach((mesh, group) => this.#replace(this.#options.groups[group].objects, mesh));
       this.part = target;
-      this.#options.onLevel({surface: this, level: target, error: this.stream.errors[target], triangles: mesh.indices.length / 3});
+      this.#options.onLevel({surface: this, level: target, error: this.stream.errors[target], triangles});
       this.#waiting = this.#waiting.filter(({wanted, resolve}) => wanted > target || resolve());
     } catch (error) {
       this.#fail(error, target);
@@ -132,18 +146,22 @@ export class Surface {
   }
 
   // Another geometry in the same objects: the frame before shows the old one, the frame after the new one.
-  #replace({positions, normals, indices}) {
+  #replace(objects, {positions, normals, indices, attributes}) {
+    if (objects.length === 0) return;
     const {BufferGeometry, BufferAttribute, Box3, Sphere, Vector3} = this.#options.three;
-    const old = this.objects[0].geometry, geometry = new BufferGeometry();
+    const old = objects[0].geometry, geometry = new BufferGeometry();
     geometry.name = old.name;
     geometry.userData = old.userData;
     geometry.setAttribute('position', new BufferAttribute(positions, 3));
     if (normals) geometry.setAttribute('normal', new BufferAttribute(normals, 3));
+    for (const [name, values] of Object.entries(attributes)) {
+      geometry.setAttribute(nameInThree(name), new BufferAttribute(values, values.length * 3 / positions.length));
+    }
     geometry.setIndex(new BufferAttribute(indices, 1));
     geometry.boundingBox = new Box3(new Vector3(...this.stream.min), new Vector3(...this.stream.max));
     geometry.boundingSphere = geometry.boundingBox.getBoundingSphere(new Sphere());
     geometry.boundingSphere.radius += this.stream.errors[0];  // coarse levels may stick out of the bounds of the finest
-    for (const object of this.objects) object.geometry = geometry;
+    for (const object of objects) object.geometry = geometry;
     old.dispose();
   }
 

@@ -34,6 +34,8 @@ export class ProgressiveModel extends EventTarget {
   readonly surfaces: Surface[];
   pixelError: number;
   maxTriangles: number;
+  /** Messages of all 'problem' events so far. */
+  readonly problems: string[];
   readonly received: number;
   readonly total: number;
   /** Chooses levels by their error on the screen; height: pixels of the viewport. */

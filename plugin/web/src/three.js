@@ -3,6 +3,7 @@
 //   const gltf = await loader.loadAsync('model.glb');     // shows its base
 //   gltf.userData.lacerta.addEventListener('level', ...);  // a ProgressiveModel
 // or, to show the base before the file has arrived, LacertaLoader.
+import {nameInThree} from './arrays.js';
 import {extensionName, parseProgressive, progressivePrimitive} from './asset.js';
 import {formatGlb, neededRanges, readHead} from './glb.js';
 import {createPool} from './inline.js';
@@ -56,30 +57,46 @@ export class LacertaExtension {
     await model.begin(await poolOf(this.#options), descriptions, this.#options.three, this.#options);
     const reading = model.read(this.#options.source ?? (target => this.#readParsed(target)));
     // Objects without a fallback have nothing to show before.
-    const hidden = model.surfaces.filter((surface, i) => !descriptions[i].hasFallback);
+    const hidden = model.surfaces.filter((surface, i) => descriptions[i].groups.some(group => group.objects.length > 0 && !group.hasFallback));
     await Promise.race([Promise.allSettled(hidden.map(surface => surface.when(0))), reading.then(() => new Promise(resolve => setTimeout(resolve, 2000)))]);
   }
 
-  // Objects by stream. What cannot be a stream of ours is left to its fallback.
+  // Objects by stream and group. Streams that no object shows are left out.
   #collect(gltf) {
     const {json, associations} = this.#parser, byStream = new Map();
+    const add = (primitive, object) => {
+      const found = progressivePrimitive(primitive, this.#progressive);
+      if (!found) return;
+      const {stream, group} = found, {baseLengths = [0]} = this.#progressive.streams[stream];
+      if (!byStream.has(stream)) {
+        byStream.set(stream, {index: stream, groups: baseLengths.map(() => ({objects: [], hasFallback: false, attributes: {}}))});
+      }
+      const entry = byStream.get(stream).groups[group];
+      entry.attributes = primitive.extensions.KHR_draco_mesh_compression?.attributes ?? primitive.attributes;
+      if (!object) return;
+      entry.hasFallback ||= hasData(json, primitive);
+      entry.objects.push(object);
+    };
+    // Bases of groups that are not in the scene are wanted, too.
+    for (const mesh of json.meshes ?? []) for (const primitive of mesh.primitives) add(primitive);
     for (const scene of gltf.scenes) {
       scene.traverse(object => {
         const {meshes, primitives} = associations.get(object) ?? {};
         const primitive = object.isMesh && json.meshes[meshes]?.primitives[primitives ?? 0];
-        if (!primitive) return;
-        const found = progressivePrimitive(primitive, this.#progressive);
-        if (!found || found.group !== 0) return;
-        if (!byStream.has(found.stream)) byStream.set(found.stream, {index: found.stream, objects: [], hasFallback: hasData(json, primitive)});
-        byStream.get(found.stream).objects.push(object);
+        if (primitive) add(primitive, object);
       });
     }
-    for (const {index, objects} of byStream.values()) if (this.#progressive.streams[index].normals === 'smooth') this.#smooth(objects);
     const {dracoLoader} = this.#options;
-    const decodeBase = dracoLoader && (bytes => new Promise((resolve, reject) => {
-      dracoLoader.parse(bytes.slice().buffer, geometry => resolve({positions: geometry.attributes.position.array, indices: geometry.index.array}), reject);
+    // attributes: those that the group has; their ids in the stream follow from their place among the names.
+    const decodeBase = dracoLoader && ((bytes, names, attributes) => new Promise((resolve, reject) => {
+      const present = names.filter(name => name in attributes), types = {position: 'Float32Array'}, ids = {position: 0};
+      for (const name of present) [types[nameInThree(name)], ids[nameInThree(name)]] = ['Float32Array', names.indexOf(name) + 1];
+      if (names.length === 0) dracoLoader.parse(bytes.buffer, resolve, reject);
+      else dracoLoader.decodeDracoFile(bytes.buffer, resolve, ids, types, undefined, reject);
     }));
-    return [...byStream.values()].map(description => ({...description, decodeBase}));
+    const shown = [...byStream.values()].filter(({groups}) => groups.some(group => group.objects.length > 0));
+    for (const {index, groups} of shown) if (this.#progressive.streams[index].normals === 'smooth') this.#smooth(groups[0].objects);
+    return shown.map(description => ({...description, decodeBase}));
   }
 
   // GLTFLoader shades meshes without normals flat; these have normals that follow from their shape.
@@ -132,7 +149,7 @@ export class LacertaLoader {
 
   async #loadStream(url, options) {
     const body = new GrowingBytes();
-    let head, needed = Infinity, dataAt = 0, model, started, resolveStarted, ended;
+    let head, needed = Infinity, dataAt = 0, model, started, resolveStarted;
     const isStarted = new Promise(resolve => { resolveStarted = resolve; });
     const stop = new AbortController();
     options.signal?.addEventListener('abort', () => { stop.abort(options.signal.reason); model?.abort(); });
@@ -148,8 +165,8 @@ export class LacertaLoader {
       if (body.length >= needed) resolveStarted(started = true);
     };
     const read = transfer(url, onBytes, {...options, signal: stop.signal});
-    read.then(() => { ended = true; }, () => {});
     await Promise.race([isStarted, read]);
+    if (!started && (head === undefined || needed < Infinity)) throw new Error(`${url}: the file ends early, after ${body.length} bytes, with nothing to show`);
     if (!started) return this.#parse(body.bytes.slice().buffer, url);
     const source = async (target, signal) => {
       if (!model) {
@@ -160,7 +177,6 @@ export class LacertaLoader {
       }
       return transfer(url, (offset, bytes) => target.push(offset - dataAt, bytes), {...options, begin: dataAt + firstGap(target), signal});
     };
-    void ended;
     return this.#parse(formatGlb(head.json, body.bytes.slice(head.binOffset, needed)), url, {source});
   }
 

@@ -53,6 +53,7 @@ export async function transfer(url, onBytes, {begin = 0, end, signal, retries = 
       const reader = response.body.getReader();
       for (;;) {
         const {done, value} = await reader.read();
+        watch.signal.throwIfAborted();
         if (done) break;
         touch();
         const from = Math.max(at, position), to = Math.min(position + value.length, end ?? Infinity);

@@ -14,8 +14,9 @@ const calls = {
   append: (bytes, stream) => ({level: streams.get(stream).append(bytes), ...streams.get(stream).progress()}),
   finish: (unused, stream) => ({level: streams.get(stream).finish(), ...streams.get(stream).progress()}),
   setBase: ({positions, indices}, stream) => streams.get(stream).setBase(positions, indices),
+  setBaseGroup: ({group, base}, stream) => streams.get(stream).setBaseGroup(group, base),
   progress: (unused, stream) => streams.get(stream).progress(),
-  read: ({level, normals}, stream) => streams.get(stream).read(level, {normals}),
+  read: ({level, options}, stream) => streams.get(stream).read(level, options),
   dispose(unused, stream) {
     streams.get(stream)?.dispose();
     streams.delete(stream);
@@ -26,7 +27,7 @@ const calls = {
 async function answer({id, stream, call, argument}) {
   try {
     const value = await calls[call](argument, stream);
-    const buffers = call === 'read' ? [value.positions, value.normals, value.indices].filter(Boolean).map(array => array.buffer) : [];
+    const buffers = call === 'read' ? [value.positions, value.normals, value.indices, ...Object.values(value.attributes)].filter(Boolean).map(array => array.buffer) : [];
     port.postMessage({id, value}, buffers);
   } catch (error) {
     if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError) {

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using Lattice = std::vector<std::array<int32_t, 3>>;
 
 GluedCorners GlueAll(const Lattice& lattice, const std::vector<Triangle>& triangles) {
-  return GlueCorners(triangles.size(), PairHalfEdges(lattice, triangles), [](uint32_t) { return true; }, [](uint32_t, uint32_t) { return true; });
+  return GlueCorners(std::vector<uint8_t>(triangles.size(), 1), PairHalfEdges(lattice, triangles));
 }
 
 const Lattice kSquare = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}}, {{0, 0, 0}}, {{1, 1, 0}}, {{5, 5, 5}}};

@@ -1,4 +1,6 @@
-// The error on the screen against time, as a picture: drawn as SVG and photographed, so that no plotting program is needed.
+// The error on the screen against time, as a picture: SVG that the browser turns into PNG, so that no plotting program is needed.
+import {writeFileSync} from 'node:fs';
+
 export async function drawCurves(page, rows, path) {
   const width = 640, height = 400, left = 60, bottom = 50, top = 30, right = 20;
   const end = 1.05 * Math.max(...rows.map(row => row.milliseconds)), low = Math.min(...rows.map(row => row.psnr)) - 5, high = Math.max(...rows.map(row => row.psnr)) + 3;
@@ -14,8 +16,16 @@ export async function drawCurves(page, rows, path) {
     ${ticks(low, high, 6).map(psnr => text(left - 6, y(psnr) + 4, 'end', psnr.toFixed(0)) + `<path d="M${left},${y(psnr)}H${width - right}" stroke="#ddd"/>`).join('')}
     <path d="${steps('lacerta')}" fill="none" stroke="#0a7d33" stroke-width="2"/><path d="${steps('draco')}" fill="none" stroke="#b3261e" stroke-width="2"/>
     ${text((left + width) / 2, height - 12, 'middle', 'seconds after the request, over 100 kB/s')}${text(left, 18, 'start', 'dB on the screen: Lacerta green, Draco of the same final error red')}</svg>`;
-  await page.setViewportSize({width, height});
-  await page.setContent(`<body style="margin:0">${svg}</body>`);
-  await page.screenshot({path});
-  await page.close();
+  // Through a canvas: a screenshot would wait for the compositor, which software rendering keeps busy.
+  const png = await page.evaluate(async ([text, w, h]) => {
+    const image = new Image(), canvas = Object.assign(document.createElement('canvas'), {width: w, height: h});
+    image.src = `data:image/svg+xml;utf8,${encodeURIComponent(text)}`;
+    await image.decode();
+    const context = canvas.getContext('2d');
+    context.fillStyle = '#fff';
+    context.fillRect(0, 0, w, h);
+    context.drawImage(image, 0, 0);
+    return canvas.toDataURL('image/png').split(',')[1];
+  }, [svg, width, height]);
+  writeFileSync(path, Buffer.from(png, 'base64'));
 }

@@ -1,11 +1,11 @@
 // The viewer in Chromium: what shows when over a slow link, smoothness, memory, and what happens when the network does not behave.
 import assert from 'node:assert/strict';
-import {readFileSync, writeFileSync} from 'node:fs';
+import {copyFileSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {drawCurves} from './curves.mjs';
 import {loadWhole, openViewer, pictures, scanAsset} from './support.mjs';
-import {root, scratch} from '../node/support.mjs';
+import {example, root, scratch} from '../node/support.mjs';
 
 let viewer, page, asset;
 before(async () => {
@@ -33,7 +33,6 @@ test('over 100 kB/s the base shows within half a second, and the surface sharpen
     draco = Math.min(draco, await fresh.page.evaluate('window.draco_shown'));
   }
   const {min, max, errors} = await fresh.page.evaluate('(({min, max, errors}) => ({min, max, errors}))(window.model.surfaces[0].stream)');
-  await fresh.close();
   const diagonal = Math.hypot(...max.map((x, axis) => x - min[axis]));
   const levels = history.filter(({level}) => level >= 0);
   const rows = history.map(({level, error, milliseconds}) => ({what: 'lacerta', level: Math.max(level, 0), error: error ?? errors[0], milliseconds}));
@@ -42,7 +41,8 @@ test('over 100 kB/s the base shows within half a second, and the surface sharpen
   const table = rows.map(({what, level, error, milliseconds}) => `${asset.name},${what},${level},${error},${psnr(error)},${milliseconds.toFixed(0)}`);
   const target = process.env.LACERTA_UPDATE_RESULTS ? join(root, 'docs/results') : pictures;
   writeFileSync(join(target, 'streaming_curve.csv'), `mesh,file,level,error,psnr,milliseconds\n${table.join('\n')}\n`);
-  await drawCurves(await page.context().browser().newPage(), rows.map(row => ({...row, psnr: Number(psnr(row.error))})), join(target, 'streaming_curve.png'));
+  await drawCurves(fresh.page, rows.map(row => ({...row, psnr: Number(psnr(row.error))})), join(target, 'streaming_curve.png'));
+  await fresh.close();
   assert.ok(history[0].milliseconds < 500, `base after ${history[0].milliseconds} ms`);
   const good = levels.find(({error}) => 20 * Math.log10(diagonal / error) >= 65);
   // A third of Draco's time is the aim, at sizes where the link and not the start of a request counts; half of it has to be there always.
@@ -99,14 +99,19 @@ test('no task over 50 ms on the main thread while 100k triangles refine', async 
   const small = await openViewer({width: 160, height: 160});
   try {
     await loadWhole(small.page, asset.file);
-    await small.page.evaluate(`window.long_tasks = [];
-      new PerformanceObserver(list => window.long_tasks.push(...list.getEntries().map(entry => entry.duration))).observe({entryTypes: ['longtask']});
-      window.viewer.clear()`);
+    await small.page.evaluate('window.viewer.clear()');
+    const browser = small.page.context().browser();
+    await browser.startTracing(small.page, {categories: ['toplevel', 'disabled-by-default-devtools.timeline']});
     const history = await loadWhole(small.page, `${asset.file}?kbps=40`);
     await small.page.waitForTimeout(200);
+    const {traceEvents} = JSON.parse(await browser.stopTracing());
     assert.ok(history.some(({triangles}) => triangles >= 100_000), JSON.stringify(history));
-    const tasks = await small.page.evaluate('window.long_tasks');
-    assert.ok(tasks.length === 0, `long tasks: ${tasks.map(Math.round)} ms`);
+    // By CPU time: what other programs take of the machine is none of ours.
+    const main = traceEvents.filter(({name, args}) => name === 'thread_name' && args.name === 'CrRendererMain').map(({pid, tid}) => `${pid} ${tid}`);
+    const tasks = traceEvents.filter(({name, tdur, pid, tid}) => /RunTask|ThreadControllerImpl::RunTask/.test(name) && tdur > 0 && main.includes(`${pid} ${tid}`))
+      .map(({tdur}) => tdur / 1000).sort((a, b) => b - a);
+    assert.ok(tasks.length > 50, `${tasks.length} tasks were traced`);
+    assert.ok(tasks[0] < 50, `longest tasks: ${tasks.slice(0, 5).map(Math.round)} ms`);
   } finally {
     await small.close();
   }
@@ -149,6 +154,11 @@ test('a truncated, a damaged, a missing and a stalled file each leave the last g
   await page.evaluate(() => window.viewer.show('/assets/truncated.glb', {mode: 'stream', name: 'truncated'}));
   let {part, shown} = await messages();
   assert.ok(part >= 0 && part < await page.evaluate('window.model.surfaces[0].lastPart') && shown > 0);
+  assert.match(await problem(), /^the file ends early: \d+ of \d+ bytes of the surfaces are there; the last good level stays$/);
+
+  writeFileSync(join(scratch, 'stump.glb'), bytes.subarray(0, 1500));
+  await page.evaluate(() => window.viewer.show('/assets/stump.glb', {mode: 'stream', name: 'stump'}));
+  assert.match(await problem(), /stump\.glb: the file ends early, after 1500 bytes, with nothing to show/);
 
   await page.evaluate(() => window.viewer.show('/assets/damaged.glb', {mode: 'stream', name: 'damaged'}));
   ({part, shown} = await messages());
@@ -168,6 +178,32 @@ test('a download that is stopped goes on where it ended', async () => {
   assert.equal(await problem(), '');
   await page.evaluate('window.model.resume()');
   await page.waitForFunction('window.model.surfaces[0].isComplete', null, {timeout: 20000});
+});
+
+test('groups of a stream with attributes refine together, each with its own attributes, and no crack opens between them', async () => {
+  copyFileSync(example('torus_with_attributes.glb'), join(scratch, 'groups.glb'));
+  for (const mode of ['stream', 'range']) {
+    const history = await loadWhole(page, '/assets/groups.glb', mode);
+    assert.equal(await problem(), '');
+    assert.deepEqual(history.at(-1).triangles, 20480);
+    const groups = await page.evaluate(() => {
+      const meshes = window.model.surfaces[0].objects;
+      return meshes.map(({geometry: {attributes, index}}) => ({names: Object.keys(attributes).sort(), vertices: attributes.position.count, triangles: index.count / 3,
+        uv: Array.from(attributes.uv.array), positions: Array.from(attributes.position.array), lengths: Array.from({length: attributes.normal.count},
+          (unused, v) => Math.hypot(attributes.normal.getX(v), attributes.normal.getY(v), attributes.normal.getZ(v)))}));
+    });
+    assert.equal(groups.length, 2);
+    assert.equal(groups[0].triangles + groups[1].triangles, 20480);
+    assert.equal(groups[0].vertices + groups[1].vertices, 10582);
+    for (const {names, uv, lengths} of groups) {
+      assert.deepEqual(names, ['normal', 'position', 'uv']);
+      assert.ok(Math.max(...uv) <= 1.01 && Math.min(...uv) >= -0.01 && Math.max(...uv) > 0.9);
+      assert.ok(lengths.every(length => Math.abs(length - 1) < 1e-5));
+    }
+    const at = positions => new Set(positions.flatMap((x, i) => i % 3 === 0 ? [positions.slice(i, i + 3).join()] : []));
+    const first = at(groups[0].positions), shared = [...at(groups[1].positions)].filter(place => first.has(place)).length;
+    assert.ok(shared >= 64, `${shared} places on both sides of the border`);
+  }
 });
 
 test('no error was thrown in the page', () => assert.deepEqual(viewer.errors, []));

@@ -4,11 +4,13 @@ import {existsSync, mkdtempSync, readFileSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
+import {Logger, NodeIO} from '@gltf-transform/core';
 import draco3d from 'draco3d';
 
 export const root = fileURLToPath(new URL('../../../../', import.meta.url));
 export const dataFolder = process.env.LACERTA_TEST_DATA_DIR ?? join(root, '../shared/data');
 export const golden = name => new Uint8Array(readFileSync(join(root, 'tests/golden/v1', name)));
+export const example = name => join(root, 'gltf/LACERTA_mesh_progressive/examples', name);
 export const goldenForms = ['draco_form.drc', 'custom_form.drc', 'custom_form_compact.drc'];
 export const scratch = mkdtempSync(join(tmpdir(), 'lacerta-web-'));
 
@@ -22,6 +24,17 @@ export function nativeLevel(path, level) {
   const out = join(scratch, 'native.ply');
   lacerta('unpack', path, '--level', String(level), '-o', out);
   return readPly(out);
+}
+
+/** The primitives of the first mesh of a level as the native command unpacks them: [{positions, indices, attributes: {name: Float32Array}}]. */
+export async function nativeGroups(path, level) {
+  const out = join(scratch, 'native.glb');
+  lacerta('unpack', path, '--level', String(level), '-o', out);
+  const document = await new NodeIO().setLogger(new Logger(Logger.Verbosity.SILENT)).read(out);
+  return document.getRoot().listMeshes()[0].listPrimitives().map(primitive => ({
+    positions: primitive.getAttribute('POSITION').getArray(), indices: Uint32Array.from(primitive.getIndices().getArray()),
+    attributes: Object.fromEntries(primitive.listSemantics().filter(name => name !== 'POSITION').map(name => [name, primitive.getAttribute(name).getArray()])),
+  }));
 }
 
 /** {positions, indices} of a binary PLY as the native command writes it. */
@@ -53,8 +66,8 @@ export function largestUlps(a, b) {
 let draco;
 export const dracoModule = async () => draco ??= await draco3d.createDecoderModule();
 
-/** What Draco's own WebAssembly decoder makes of a stream: {positions, indices}. */
-export function decodeDraco(module, bytes) {
+/** What Draco's own WebAssembly decoder makes of a stream: {positions, indices, attributes}. names: of the attributes with the ids 1, 2, ... */
+export function decodeDraco(module, bytes, names = []) {
   const decoder = new module.Decoder(), buffer = new module.DecoderBuffer(), mesh = new module.Mesh();
   buffer.Init(new Int8Array(bytes.buffer, bytes.byteOffset, bytes.length), bytes.length);
   const status = decoder.DecodeBufferToMesh(buffer, mesh);
@@ -63,12 +76,21 @@ export function decodeDraco(module, bytes) {
   const memory = module._malloc(12 * Math.max(points, faces));
   decoder.GetTrianglesUInt32Array(mesh, 12 * faces, memory);
   const indices = new Uint32Array(module.HEAPU8.buffer, memory, 3 * faces).slice();
-  const attribute = decoder.GetAttributeByUniqueId(mesh, decoder.GetAttribute(mesh, decoder.GetAttributeId(mesh, module.POSITION)).unique_id());
-  decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, module.DT_FLOAT32, 12 * points, memory);
-  const positions = new Float32Array(module.HEAPU8.buffer, memory, 3 * points).slice();
+  const floats = attribute => {
+    const size = 4 * attribute.num_components() * points, at = module._malloc(size);
+    decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, module.DT_FLOAT32, size, at);
+    const array = new Float32Array(module.HEAPU8.buffer, at, size / 4).slice();
+    module._free(at);
+    return array;
+  };
+  const positions = floats(decoder.GetAttribute(mesh, decoder.GetAttributeId(mesh, module.POSITION))), attributes = {};
+  for (let i = 0; i < mesh.num_attributes() && names.length > 0; ++i) {
+    const attribute = decoder.GetAttribute(mesh, i), name = names[attribute.unique_id() - 1];
+    if (name !== undefined) attributes[name] = floats(attribute);
+  }
   module._free(memory);
   for (const object of [mesh, buffer, decoder]) module.destroy(object);
-  return {positions, indices};
+  return {positions, indices, attributes};
 }
 
 /** A torus with bumps as OBJ, closed and smooth: something that becomes a stream of several levels in a second. */
