@@ -126,6 +126,19 @@ EncodedMesh InForm(StreamForm form, EncodedParts parts) {
   return std::move(mesh);
 }
 
+// A mesh on its own connectivity is what it was, vertex for vertex: that is worth some bytes, or dB at a rate.
+bool IsWorthItsVertices(const MeasuredStream& own, const MeasuredStream& remeshed, const ResolvedTarget& target) {
+  constexpr double kBytes = 1.1, kPsnr = 0.5;
+  if (!remeshed.meets_target) return true;
+  if (target.is_rate) return own.psnr + kPsnr >= remeshed.psnr;
+  return static_cast<double>(own.stream.size()) <= kBytes * static_cast<double>(remeshed.stream.size());
+}
+
+bool HasLargeBase(const ChosenStream& chosen, const ResolvedTarget& target, const TriangleMesh& input) {
+  const double psnr = TypicalPsnr(target, static_cast<double>(input.positions.size()));
+  return static_cast<double>(chosen.measured.stream.base_mesh.lattice.size()) > TypicalBase(psnr);
+}
+
 // The mesh on its own connectivity where that is subdivided and reaches the target; none else.
 std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter,
                                              const ResolvedTarget& target, const EncodeOptions& options) {
@@ -137,44 +150,57 @@ std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const Sur
   return std::move(chosen).value();
 }
 
-// The remeshed surface at the target, or a simplified mesh without levels where that is better. crowding: of the mesh (TriangleTree).
-StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, double crowding, const SurfaceDistanceMeter& meter,
-                                     const ResolvedTarget& target, const EncodeOptions& options, EncodeReport report) {
-  const auto progress = [&](double share, const char* stage) {
-    if (options.progress) options.progress(share, stage);
-  };
-  if (options.levels == LevelChoice::kNever) return Unsupported("no refinement levels were asked for");
-  if (crowding > kMostCrowding) return Unsupported("too many triangles go through each other for a surface to be followed");
-  progress(0.0, "looking at the surface");
-  if (const std::optional<ChosenStream> subdivided = EncodeSubdivided(mesh, meter, target, options)) {
-    report.subdivided_input = true;
-    return FromRefinement(meter, *subdivided, target.base_coding, report, ReasonForMiss(subdivided->measured, target));
-  }
+// The surface as a normal mesh at the target. Simplifies the mesh beside that, where `sequence` is given; fills `report`.
+StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
+                                    const EncodeOptions& options, std::optional<SimplificationSequence>* sequence, PartsReport* report) {
   const SurfaceParts parts = SplitSurface(mesh);
   if (parts.refined.triangles.empty()) return Unsupported("no component has triangles enough to be worth remeshing");
-  progress(0.02, "simplifying");
+  if (options.progress) options.progress(0.02, "simplifying");
   const InputSurface surface(parts.refined, parts.topology);
+  const SearchEffort effort = EffortOf(options.effort);
   const double psnr = TypicalPsnr(target, static_cast<double>(mesh.positions.size()));
   std::optional<CollapseHistory> history;
-  std::optional<SimplificationSequence> sequence;
-  tbb::parallel_invoke([&] { history.emplace(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), UsualLambda(psnr, meter.diagonal()), EffortOf(options.effort).shape_sizes)); },
-                       [&] {
-                         if (options.levels == LevelChoice::kWhereTheyPay) sequence.emplace(mesh);
-                       });
+  tbb::parallel_invoke(
+      [&] { history.emplace(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), UsualLambda(psnr, meter.diagonal()), effort.shape_sizes)); },
+      [&] {
+        if (sequence != nullptr) sequence->emplace(mesh);
+      });
   const StillPart still = PrepareStillPart(parts.still, parts.refined, DistanceOfPsnr(psnr, meter.diagonal()));
-  const RefinableSurface refinable{surface, *history, still.mesh};
-  LACERTA_ASSIGN_OR_RETURN(const ChosenStream chosen, CodeAtTarget(refinable, meter, target, options.mode, options.progress, EffortOf(options.effort)));
-  report.parts = {parts.refined_components,       parts.still_components, still.hidden_components,
-                  parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices};
-  progress(0.95, "comparing with Draco");
-  std::optional<ZeroLevelStream> simpler;
-  history.reset();  // the largest of what is no longer needed
-  if (sequence) {
-    LACERTA_ASSIGN_OR_RETURN(simpler, SimplerIfBetter(mesh, *sequence, meter, target, chosen.measured, EffortOf(options.effort)));
+  *report = {parts.refined_components,       parts.still_components, still.hidden_components,
+             parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices};
+  return CodeAtTarget({surface, *history, still.mesh}, meter, target, options.mode, options.progress, effort);
+}
+
+// The surface at the target on its own connectivity, remeshed, or as a simplified mesh without levels, whichever is better. crowding: of
+// the mesh (TriangleTree).
+StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, double crowding, const SurfaceDistanceMeter& meter,
+                                     const ResolvedTarget& target, const EncodeOptions& options, EncodeReport report) {
+  if (options.levels == LevelChoice::kNever) return Unsupported("no refinement levels were asked for");
+  if (crowding > kMostCrowding) return Unsupported("too many triangles go through each other for a surface to be followed");
+  if (options.progress) options.progress(0.0, "looking at the surface");
+  std::optional<ChosenStream> chosen = EncodeSubdivided(mesh, meter, target, options);
+  report.subdivided_input = chosen.has_value();
+  std::optional<SimplificationSequence> sequence;
+  // A base as small as remeshes have is the best there is; a larger one may take more bytes than another surface in all.
+  if (!chosen || HasLargeBase(*chosen, target, mesh)) {
+    PartsReport parts;
+    StatusOr<ChosenStream> remeshed =
+        CodeRemeshed(mesh, meter, target, options, options.levels == LevelChoice::kWhereTheyPay ? &sequence : nullptr, &parts);
+    if (!chosen && !remeshed.ok()) return remeshed.status();
+    if (!chosen || (remeshed.ok() && !IsWorthItsVertices(chosen->measured, remeshed.value().measured, target))) {
+      chosen = std::move(remeshed).value();
+      report.subdivided_input = false;
+      report.parts = parts;
+    }
   }
-  const std::string reason = simpler ? ReasonForSimpler(*simpler, target) : ReasonForMiss(chosen.measured, target);
-  if (simpler) return FromZeroLevel(std::move(*simpler), report, reason);
-  return FromRefinement(meter, chosen, target.base_coding, report, reason);
+  if (options.progress) options.progress(0.95, "comparing with Draco");
+  std::optional<ZeroLevelStream> simpler;
+  if (sequence) {
+    LACERTA_ASSIGN_OR_RETURN(simpler, SimplerIfBetter(mesh, *sequence, meter, target, chosen->measured, EffortOf(options.effort)));
+  }
+  if (!simpler) return FromRefinement(meter, *chosen, target.base_coding, report, ReasonForMiss(chosen->measured, target));
+  report.subdivided_input = false;
+  return FromZeroLevel(std::move(*simpler), report, ReasonForSimpler(*simpler, target));
 }
 
 }  // namespace

@@ -43,23 +43,6 @@ TriangleMesh Icosahedron() {
   return mesh;
 }
 
-// Splits every face into four at the middles of its edges.
-TriangleMesh Split(const TriangleMesh& mesh) {
-  TriangleMesh fine;
-  fine.positions = mesh.positions;
-  std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
-  const auto middle = [&](uint32_t a, uint32_t b) {
-    const auto [at, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<uint32_t>(fine.positions.size()));
-    if (is_new) fine.positions.push_back((mesh.positions[a] + mesh.positions[b]) * 0.5f);
-    return at->second;
-  };
-  for (const Triangle& t : mesh.triangles) {
-    const uint32_t a = middle(t[0], t[1]), b = middle(t[1], t[2]), c = middle(t[2], t[0]);
-    fine.triangles.insert(fine.triangles.end(), {{t[0], a, c}, {a, t[1], b}, {c, b, t[2]}, {a, b, c}});
-  }
-  return fine;
-}
-
 using Cell = std::array<int, 3>;
 
 // The surface of the unit cubes for which `is_full`, inside the box of `size` cubes, every side split n times n.
@@ -134,6 +117,22 @@ Vec3f SpiralDirection(int k, int count) {
 }
 
 }  // namespace
+
+TriangleMesh Split(const TriangleMesh& mesh) {
+  TriangleMesh fine;
+  fine.positions = mesh.positions;
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
+  const auto middle = [&](uint32_t a, uint32_t b) {
+    const auto [at, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<uint32_t>(fine.positions.size()));
+    if (is_new) fine.positions.push_back((mesh.positions[a] + mesh.positions[b]) * 0.5f);
+    return at->second;
+  };
+  for (const Triangle& t : mesh.triangles) {
+    const uint32_t a = middle(t[0], t[1]), b = middle(t[1], t[2]), c = middle(t[2], t[0]);
+    fine.triangles.insert(fine.triangles.end(), {{t[0], a, c}, {a, t[1], b}, {c, b, t[2]}, {a, b, c}});
+  }
+  return fine;
+}
 
 TriangleMesh Icosphere(int levels, float radius) {
   TriangleMesh mesh = Icosahedron();

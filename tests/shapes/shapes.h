@@ -11,6 +11,9 @@
 
 namespace lacerta::shapes {
 
+// The mesh with every face split into four at the middles of its edges.
+TriangleMesh Split(const TriangleMesh& mesh);
+
 // Smooth and closed.
 
 // Sphere around the origin, vertices on it: an icosahedron split `levels` times 1 to 4. 20 * 4^levels faces. Genus 0.

@@ -309,6 +309,17 @@ TEST(EncodeMeshTest, SubdividedInputIsRemeshedWhereItsVerticesWouldNotBeTold) {
   EXPECT_TRUE(EncodeOrDie(mesh, OptionsFor(Kind::kBytes, 5000)).report.subdivided_input);
 }
 
+// A fine mesh that is split once has a base that costs more than the whole of another surface.
+TEST(EncodeMeshTest, SubdividedInputIsRemeshedWhereItsBaseIsTooLarge) {
+  TriangleMesh fine = shapes::Torus(61, 37);  // odd: nothing it could have been split from
+  for (Vec3f& p : fine.positions) p *= 1.0f + 0.05f * std::sin(3.0f * p.x + 2.0f * p.z);
+  const TriangleMesh split = shapes::Split(fine);
+  const EncodedMesh encoded = EncodeOrDie(split, OptionsFor(Kind::kPsnr, 60));
+  EXPECT_FALSE(encoded.report.subdivided_input);
+  EXPECT_LT(encoded.report.levels.front().vertices, fine.positions.size() / 4);
+  EXPECT_GE(DecodedPsnr(split, encoded.stream, static_cast<int>(encoded.report.levels.size()) - 1), 60.0);
+}
+
 TEST(EncodeMeshTest, CleansBeforeItRemeshes) {
   const EncodedMesh soup = EncodeOrDie(shapes::TriangleSoup(3), OptionsFor(Kind::kPsnr, 50));
   EXPECT_GT(soup.report.clean.welded_vertices, 0u);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "draco_ext/remesh/remeshing.h"
+#include "remesh/base_parts.h"
 #include "remesh/surface_parts.h"
 
 namespace lacerta {
@@ -17,7 +18,6 @@ namespace {
 using lacerta::testing::Moved;
 using lacerta::testing::PositionOf;
 using lacerta::testing::RandomPointOn;
-using lacerta::Together;
 
 struct Case {
   const char* name;

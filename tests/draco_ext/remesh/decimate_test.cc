@@ -9,6 +9,7 @@
 
 #include "common/subdivision.h"
 #include "draco_ext/remesh/remeshing.h"
+#include "remesh/base_parts.h"
 
 namespace lacerta {
 namespace {
@@ -21,7 +22,6 @@ using lacerta::testing::PositionOf;
 using lacerta::testing::RandomPointOn;
 using lacerta::testing::Scaled;
 using lacerta::testing::Tetrahedron;
-using lacerta::Together;
 
 CollapseHistory DecimateTo(const TriangleMesh& mesh, uint32_t target) {
   DecimateOptions options;

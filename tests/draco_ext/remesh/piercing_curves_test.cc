@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "draco_ext/remesh/remeshing.h"
+#include "remesh/base_parts.h"
 #include "lacerta/decoder.h"
 #include "remesh/surface_fit.h"
 #include "remesh/surface_parts.h"
@@ -13,7 +14,6 @@ namespace lacerta {
 namespace {
 
 using lacerta::testing::Moved;
-using lacerta::Together;
 using lacerta::testing::TimeOf;
 
 struct Remeshed {
@@ -212,7 +212,7 @@ TEST(PierceCurves, BothSidesOfACutNumberTheirHalvesAlike) {
   const TriangleMesh sheet = shapes::GridWithBorder(12, 12);
   const auto [low, high] = std::minmax_element(sheet.positions.begin(), sheet.positions.end(), [](const Vec3f& a, const Vec3f& b) { return a.x < b.x; });
   const float low_x = low->x, high_x = high->x;
-  const TriangleMesh input = lacerta::Together(sheet, lacerta::testing::Moved(sheet, {high_x - low_x, 0, 0}));
+  const TriangleMesh input = Together(sheet, lacerta::testing::Moved(sheet, {high_x - low_x, 0, 0}));
   const auto is_on_cut = [&](const Vec3f& p) { return std::fabs(p.x - high_x) < 1e-4f; };
   Topology topology = lacerta::testing::TopologyOf(input);
   for (uint32_t v = 0; v < topology.num_vertices; ++v) {

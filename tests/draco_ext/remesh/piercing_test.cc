@@ -12,6 +12,7 @@
 #include "common/local_frame.h"
 #include "common/subdivision.h"
 #include "draco_ext/remesh/remeshing.h"
+#include "remesh/base_parts.h"
 #include "lacerta/decoder.h"
 
 namespace lacerta {
@@ -26,7 +27,6 @@ using lacerta::testing::RealMesh;
 using lacerta::testing::Remesh;
 using lacerta::testing::Scaled;
 using lacerta::testing::TimeOf;
-using lacerta::Together;
 
 TriangleMesh Finest(const NormalMesh& mesh) {
   StatusOr<TriangleMesh> finest = MeshAtLevel(mesh.mesh, mesh.mesh.num_levels);

@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "draco_ext/remesh/remeshing.h"
+#include "remesh/base_parts.h"
 
 namespace lacerta {
 namespace {
 
 using lacerta::testing::Moved;
 using lacerta::testing::Tetrahedron;
-using lacerta::Together;
 
 size_t NumCorners(const Topology& t) {
   return static_cast<size_t>(std::count(t.role.begin(), t.role.end(), CurveRole::kCorner));

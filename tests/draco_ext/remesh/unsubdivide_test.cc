@@ -14,22 +14,15 @@
 
 #include "common/subdivision.h"
 #include "draco_ext/remesh/remeshing.h"
+#include "remesh/base_parts.h"
 #include "shapes/base_meshes.h"
 
 namespace lacerta {
 namespace {
 
-using lacerta::Together;
-
-// `base` split num_levels times, with the vertices at the midpoints of edges.
 TriangleMesh Split(const TriangleMesh& base, int num_levels) {
-  Topology t = shapes::TopologyOf(base);
   TriangleMesh mesh = base;
-  for (int level = 0; level < num_levels; ++level) {
-    for (const auto& [a, b] : t.edges) mesh.positions.push_back((mesh.positions[a] + mesh.positions[b]) * 0.5f);
-    t = Refine(t);
-  }
-  mesh.triangles = t.triangles;
+  for (int level = 0; level < num_levels; ++level) mesh = shapes::Split(mesh);
   return mesh;
 }
 
