@@ -69,13 +69,12 @@ class Search {
   }
 
 
-  // The smallest surface of the sequence that meets the targets by the samples of the search; nothing where none does. guess: its size, or
-  // its largest: then nothing where that does not meet them.
-  StatusOr<std::optional<Trial>> Smallest(const AttributedSimplification& sequence, double guess, bool is_largest) const {
+  // The smallest surface of the sequence that meets the targets by the samples of the search; nothing where none does. guess: its size.
+  StatusOr<std::optional<Trial>> Smallest(const AttributedSimplification& sequence, double guess) const {
     constexpr int kMaxTrials = 7;
-    constexpr double kGoodEnough = 0.97, kCloseEnough = 1.02, kAim = 1.015;
+    constexpr double kGoodEnough = 0.97, kCloseEnough = 1.02;
     double too_few = std::max(sequence.fewest_triangles(), 1u) - 0.5, enough = sequence.num_input_triangles() + 0.5;
-    double next = guess, last_size = 0, last_ratio = 0;
+    double next = guess;
     std::optional<Trial> best;
     for (int i = 0; i < kMaxTrials && enough > kCloseEnough * too_few; ++i) {
       const auto size = static_cast<uint32_t>(std::clamp(next, too_few + 0.5, std::max(enough - 0.5, too_few + 0.5)));
@@ -86,13 +85,11 @@ class Search {
         best = std::move(trial);
         if (ratio >= kGoodEnough || enough - 1 < too_few) break;
       } else {
-        if (i == 0 && is_largest) break;
         too_few = size;
       }
-      next = size * std::clamp(std::pow(kAim * ratio, 1 / Steepness(last_size, last_ratio, size, ratio)), 0.3, 2.0);
+      // Errors go about as one over the number of triangles; where that leads out of the bracket or nowhere, its middle.
+      next = size * std::clamp(1.01 * ratio, 0.2, 4.0);
       if (i >= 4 || next <= too_few || next >= enough) next = std::sqrt(std::max(too_few, 1.0) * enough);
-      last_size = size;
-      last_ratio = ratio;
     }
     return best;
   }
@@ -102,10 +99,9 @@ class Search {
     LACERTA_ASSIGN_OR_RETURN(*trial, Measured(std::move(trial->mesh), options_.num_samples));
     if (trial->ratio <= 1) return Status();
     const AttributedSimplification sequence(original_, weights);
-    // By what is missing, but in small steps first: the area of turned triangles is chance in part.
-    for (double margin = 1.02; trial->ratio > 1; margin *= margin) {
+    for (double margin = 1.01; trial->ratio > 1; margin *= 1.01) {
       const auto triangles = static_cast<double>(trial->mesh.surface.triangles.size());
-      const double size = std::max(triangles * std::min(1.01 * trial->ratio, margin), triangles + 1);
+      const double size = std::max(triangles * trial->ratio * margin, triangles + 1);
       const uint32_t all = sequence.num_input_triangles();
       const uint32_t wanted = size < all ? static_cast<uint32_t>(size) : all;
       LACERTA_ASSIGN_OR_RETURN(*trial, Measured(Fitted(sequence, wanted), options_.num_samples));
@@ -142,15 +138,6 @@ class Search {
   }
 
  private:
-  // How errors go with the number of triangles, as its negative power: about one, or what the last two sizes tell (the last before the
-  // first, 0: none).
-  static double Steepness(double size0, double ratio0, double size1, double ratio1) {
-    constexpr double kUsual = 1, kLeast = 0.5, kMost = 4;
-    if (size0 <= 0 || size0 == size1 || !(ratio0 > 0) || !(ratio1 > 0)) return kUsual;
-    const double steepness = -std::log(ratio1 / ratio0) / std::log(size1 / size0);
-    return steepness >= kLeast ? std::min(steepness, kMost) : kUsual;
-  }
-
   static double LimitWeight(double weight) { return std::clamp(weight, 1e-9, 1e3); }
 
   // Whatever is allowed, the shape has to be kept as far as attributes are compared at closest points.
@@ -237,7 +224,7 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
   double guess = 0.3 * static_cast<double>(original.surface.triangles.size());
   for (int i = 0; i < std::max(options.num_weightings, 1); ++i) {
     const AttributedSimplification sequence(original, weights);
-    LACERTA_ASSIGN_OR_RETURN(std::optional<Trial> trial, search.Smallest(sequence, guess, best.has_value()));
+    LACERTA_ASSIGN_OR_RETURN(std::optional<Trial> trial, search.Smallest(sequence, guess));
     if (!trial) break;
     guess = static_cast<double>(trial->mesh.surface.triangles.size());
     const std::vector<double> tried = weights;
