@@ -168,20 +168,14 @@ int main(int argc, char** argv) {
     } else if (argument == "--obj" && i + 1 < argc) {
       wanted.obj = argv[++i];
     } else {
-      const auto surfaces = lacerta::ReadGltfSurfaces(argument);
-      lacerta::Status status = surfaces.status();
-      for (size_t s = 0; surfaces.ok() && s < surfaces.value().size(); ++s) {
-        auto surface = surfaces.value()[s];
+      const bool is_read = lacerta::ReportSurfaces(argument, [&](lacerta::NamedSurface surface) {
         if (wanted.is_bare) {
           surface.mesh.attributes.clear();
           surface.mesh.groups.clear();
         }
-        const lacerta::Status report = lacerta::Report(surface, wanted);
-        if (!report.ok()) std::fprintf(stderr, "%s\n", report.WithContext(surfaces.value()[s].name).message().c_str());
-      }
-      if (status.ok()) continue;
-      std::fprintf(stderr, "%s: %s\n", argument.c_str(), status.message().c_str());
-      ++failures;
+        return lacerta::Report(surface, wanted);
+      });
+      if (!is_read) ++failures;
     }
   }
   return failures == 0 ? 0 : 1;

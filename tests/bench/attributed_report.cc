@@ -77,15 +77,7 @@ int main(int argc, char** argv) {
       *number = std::atof(argv[++i]);
       continue;
     }
-    const auto surfaces = lacerta::ReadGltfSurfaces(argument);
-    lacerta::Status status = surfaces.status();
-    for (size_t s = 0; surfaces.ok() && s < surfaces.value().size(); ++s) {
-      const lacerta::Status report = lacerta::Report(surfaces.value()[s], targets);
-      if (!report.ok()) status = report.WithContext(surfaces.value()[s].name);
-    }
-    if (status.ok()) continue;
-    std::fprintf(stderr, "%s: %s\n", argument.c_str(), status.message().c_str());
-    ++failures;
+    if (!lacerta::ReportSurfaces(argument, [&](const auto& surface) { return lacerta::Report(surface, targets); })) ++failures;
   }
   return failures == 0 ? 0 : 1;
 }

@@ -103,14 +103,7 @@ int main(int argc, char** argv) {
       if (argument == "--degrees") wanted.degrees = value;
       continue;
     }
-    const auto surfaces = lacerta::ReadGltfSurfaces(argument);
-    for (size_t s = 0; surfaces.ok() && s < surfaces.value().size(); ++s) {
-      const lacerta::Status report = lacerta::Report(surfaces.value()[s], wanted);
-      if (!report.ok()) std::fprintf(stderr, "%s\n", report.WithContext(surfaces.value()[s].name).message().c_str());
-    }
-    if (surfaces.ok()) continue;
-    std::fprintf(stderr, "%s: %s\n", argument.c_str(), surfaces.status().message().c_str());
-    ++failures;
+    if (!lacerta::ReportSurfaces(argument, [&](const auto& surface) { return lacerta::Report(surface, wanted); })) ++failures;
   }
   return failures == 0 ? 0 : 1;
 }

@@ -1,5 +1,6 @@
 #include "bench/gltf_surfaces.h"
 
+#include <cstdio>
 #include <filesystem>
 #include <utility>
 
@@ -56,6 +57,19 @@ StatusOr<std::vector<NamedSurface>> ReadGltfSurfaces(const std::string& path) {
     result.push_back({std::filesystem::path(path).stem().string() + ":" + std::to_string(m), std::move(mesh)});
   }
   return result;
+}
+
+bool ReportSurfaces(const std::string& path, const std::function<Status(const NamedSurface&)>& report) {
+  const StatusOr<std::vector<NamedSurface>> surfaces = ReadGltfSurfaces(path);
+  if (!surfaces.ok()) {
+    std::fprintf(stderr, "%s\n", surfaces.status().message().c_str());
+    return false;
+  }
+  for (const NamedSurface& surface : surfaces.value()) {
+    const Status status = report(surface);
+    if (!status.ok()) std::fprintf(stderr, "%s\n", status.WithContext(surface.name).message().c_str());
+  }
+  return true;
 }
 
 }  // namespace lacerta

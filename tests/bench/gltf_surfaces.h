@@ -2,6 +2,7 @@
 #ifndef LACERTA_TESTS_BENCH_GLTF_SURFACES_H_
 #define LACERTA_TESTS_BENCH_GLTF_SURFACES_H_
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,11 @@ struct NamedSurface {
   AttributedMesh mesh;
 };
 
-// One surface for each glTF mesh that has triangles; joints and weights are left out. `vertices`: of all primitives as stored.
+// One surface for each glTF mesh that has triangles; joints and weights are left out.
 StatusOr<std::vector<NamedSurface>> ReadGltfSurfaces(const std::string& path);
+
+// Calls `report` for each of them; what fails is told on standard error, by name. Returns whether the file could be read.
+bool ReportSurfaces(const std::string& path, const std::function<Status(const NamedSurface&)>& report);
 
 }  // namespace lacerta
 
