@@ -16,6 +16,9 @@ struct KeyedIndex {
 // Sorts [begin, end) of the table by key, then by index. O(n log n).
 void SortKeyed(std::vector<KeyedIndex>* table, size_t begin, size_t end);
 
+// Sorts [begin, end) likewise and sets first[index] of each of them to the first index among them that has the same key.
+void FindFirstEqual(std::vector<KeyedIndex>* table, size_t begin, size_t end, std::vector<uint32_t>* first);
+
 // Numbers 0 .. #keys - 1 by what they are equal to: refines *first, which for each tells the first one equal to it so far, by another column of keys.
 void RefineEqual(const std::vector<uint32_t>& column, std::vector<uint32_t>* first);
 

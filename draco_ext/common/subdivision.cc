@@ -26,13 +26,7 @@ std::vector<uint32_t> FirstCornerOfEdge(const std::vector<Triangle>& triangles, 
     keyed[end[lower]++] = {higher, corner};
   }
   std::vector<uint32_t> first(num_corners);
-  for (uint32_t v = 0, begin = 0; v < num_vertices; begin = end[v++]) {
-    SortKeyed(&keyed, begin, end[v]);
-    for (uint32_t i = begin; i < end[v]; ++i) {
-      const bool is_first = i == begin || keyed[i - 1].key != keyed[i].key;
-      first[keyed[i].index] = is_first ? keyed[i].index : first[keyed[i - 1].index];
-    }
-  }
+  for (uint32_t v = 0, begin = 0; v < num_vertices; begin = end[v++]) FindFirstEqual(&keyed, begin, end[v], &first);
   return first;
 }
 

@@ -32,11 +32,7 @@ std::vector<uint32_t> FirstEqualCorner(const AttributedMesh& mesh) {
         const uint32_t c = around[i].index, value = column == 0 ? mesh.GroupOf(c / 3) : mesh.attributes[column - 1].corners[c / 3][c % 3];
         around[i].key = uint64_t{first[c]} << 32 | value;
       }
-      SortKeyed(&around, begin, e);
-      for (uint32_t i = begin; i < e; ++i) {
-        const bool is_equal = i > begin && around[i].key == around[i - 1].key;
-        first[around[i].index] = is_equal ? first[around[i - 1].index] : around[i].index;
-      }
+      FindFirstEqual(&around, begin, e, &first);
     }
     begin = e;
   }

@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "draco/decoded_distance.h"
 #include "draco/zero_level.h"
 #include "geometry/bounding_box.h"
 #include "remesh/mesh_fit.h"
@@ -40,12 +39,6 @@ uint64_t SamplesFor(double crowding) {
   return static_cast<uint64_t>(std::clamp(kMost * kWithMost / crowding, kFewest, kMost));
 }
 
-bool IsBetter(const ZeroLevelStream& a, const ZeroLevelStream& b, const ResolvedTarget& target) {
-  if (a.meets_target != b.meets_target) return a.meets_target;
-  const bool want_small = target.is_rate != a.meets_target;  // to come nearer to a rate, or to meet a PSNR with fewer bytes
-  return want_small ? a.stream.size() < b.stream.size() : a.psnr > b.psnr;
-}
-
 }  // namespace
 
 StatusOr<ZeroLevelStream> CodeCrowdedInput(const TriangleMesh& mesh, double crowding, const SurfaceDistanceMeter& meter, const ResolvedTarget& target) {
@@ -64,22 +57,16 @@ StatusOr<ZeroLevelStream> CodeCrowdedInput(const TriangleMesh& mesh, double crow
   for (int i = 0; i < kMostTries; ++i) {
     step = std::clamp(step, finest, coarsest);
     LACERTA_ASSIGN_OR_RETURN(CodedZeroLevel coded, EncodeLatticeMesh(Round(mesh, step), CodingEffort::kQuick, target.base_coding));
-    ZeroLevelStream stream;
-    stream.distance = DecodedDistance(meter, coded.mesh, samples);
-    stream.psnr = Psnr(stream.distance, meter.diagonal());
-    stream.stream = std::move(coded.stream);
-    stream.coding = coded.coding;
-    stream.mesh = std::move(coded.mesh);
+    ZeroLevelStream stream = MeasuredZeroLevel(std::move(coded), meter, target, samples);
     stream.measurements = i + 1;
     const auto bytes = static_cast<double>(stream.stream.size());
-    stream.meets_target = target.is_rate ? bytes <= target.bytes : stream.psnr >= target.psnr;
     const double reached = target.is_rate ? bytes : stream.psnr;
     if (i > 0) gain = std::clamp((reached - reached_before) / std::log2(step_before / step), least_gain, most_gain);
     reached_before = reached;
     step_before = step;
     const bool is_near = stream.meets_target && (target.is_rate ? bytes > 0.94 * target.bytes : stream.psnr < target.psnr + kDecibels);
     const double next = std::clamp(step * std::exp2(std::clamp((reached - wanted) / gain, -6.0, 6.0)), finest, coarsest);
-    if (!best || IsBetter(stream, *best, target)) best = std::move(stream);
+    if (!best || IsBetter(OutcomeOf(stream), OutcomeOf(*best), target)) best = std::move(stream);
     if (is_near || next == step) break;
     step = next;
   }

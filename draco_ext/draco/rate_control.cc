@@ -201,13 +201,12 @@ class Ladder {
   std::map<int, Rung> rungs_;
 };
 
-// What is asked for: the target met, then quality at a rate and bytes at a quality; where neither meets it, nearer to it.
-bool IsBetter(const MeasuredStream& a, const MeasuredStream& b, const ResolvedTarget& target) {
-  if (a.meets_target != b.meets_target) return a.meets_target;
-  return target.is_rate == a.meets_target ? a.psnr > b.psnr : a.stream.size() < b.stream.size();
-}
-
 }  // namespace
+
+bool IsBetter(const Outcome& a, const Outcome& b, const ResolvedTarget& target) {
+  if (a.meets_target != b.meets_target) return a.meets_target;
+  return target.is_rate == a.meets_target ? a.psnr > b.psnr : a.bytes < b.bytes;
+}
 
 double TypicalBase(double psnr) { return 200 * std::pow(2.0, (psnr - 70) / 6); }
 
@@ -255,7 +254,7 @@ StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const Surfa
                      [&](size_t i) { met[i] = ladder.Meet(rungs[first + i]); });
     for (StatusOr<ChosenStream>& tried : met) {
       LACERTA_ASSIGN_OR_RETURN(ChosenStream chosen, std::move(tried));
-      if (!best || IsBetter(chosen.measured, best->measured, target)) best = std::move(chosen);
+      if (!best || IsBetter(OutcomeOf(chosen.measured), OutcomeOf(best->measured), target)) best = std::move(chosen);
     }
     if (best->measured.meets_target) break;
   }

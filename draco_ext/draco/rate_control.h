@@ -2,6 +2,7 @@
 #ifndef LACERTA_DRACO_RATE_CONTROL_H_
 #define LACERTA_DRACO_RATE_CONTROL_H_
 
+#include <cstddef>
 #include <functional>
 
 #include "draco/candidate_search.h"
@@ -25,6 +26,20 @@ struct ChosenStream {
   double remesh_psnr = 0;   // dB, of the unquantized remesh
   double normal_share = 0;  // NormalShare
 };
+
+// What an attempt at a target came to.
+struct Outcome {
+  bool meets_target = false;
+  size_t bytes = 0;
+  double psnr = 0;  // dB
+};
+template <typename Stream>
+Outcome OutcomeOf(const Stream& measured) {
+  return {measured.meets_target, measured.stream.size(), measured.psnr};
+}
+
+// What is asked for: the target met, then quality at a rate and bytes at a quality; where neither meets it, nearer to it.
+bool IsBetter(const Outcome& a, const Outcome& b, const ResolvedTarget& target);
 
 // Codes the surface at the target: fewest bytes at a PSNR, highest PSNR at a number of bytes. Where no base size reaches the
 // target the nearest stream is returned, and says so.

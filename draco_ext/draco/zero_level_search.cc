@@ -67,12 +67,6 @@ class ZeroLevelSearch {
   // The stream of the best size.
   StatusOr<ZeroLevelStream> Finish() { return Finish(tried_.at(best_)); }
 
-  bool IsBetter(const ZeroLevelStream& a, bool b_meets, size_t b_bytes, double b_psnr) const {
-    if (a.meets_target != b_meets) return a.meets_target;
-    if (target_.is_rate == a.meets_target) return a.psnr > b_psnr;  // at a rate that is kept, or at a PSNR that is not reached
-    return a.stream.size() < b_bytes;
-  }
-
  private:
   static constexpr size_t kMostSamples = 80000;
   // By which the numbers of triangles differ that are compared.
@@ -197,17 +191,6 @@ class ZeroLevelSearch {
     return std::clamp(std::exp2(bits_per_triangle * (1 - factor) / kCoordinatesPerTriangle), 0.25, 4.0);
   }
 
-  ZeroLevelStream Measured(CodedZeroLevel coded) const {
-    ZeroLevelStream result;
-    result.stream = std::move(coded.stream);
-    result.coding = coded.coding;
-    result.mesh = std::move(coded.mesh);
-    result.distance = DecodedDistance(meter_, result.mesh);
-    result.psnr = Psnr(result.distance, meter_.diagonal());
-    result.meets_target = target_.is_rate ? static_cast<double>(result.stream.size()) <= target_.bytes : result.psnr >= target_.psnr;
-    return result;
-  }
-
   // Rounding makes bytes and distance jump a little with the step: several steps are tried, more of them where that costs little,
   // and judged by few samples first.
   StatusOr<ZeroLevelStream> Finish(const Trial& trial) {
@@ -233,10 +216,10 @@ class ZeroLevelSearch {
       const bool may_be_better = target_.is_rate ? bytes <= target_.bytes && (best_distortion == 0 || distortion < best_distortion)
                                                  : is_small_enough && distortion < 1.01 * distortion_;
       if (!best || (may_be_better && (measurements < CandidateSearch::kMostMeasurements || !best->meets_target))) {
-        ZeroLevelStream stream = Measured(std::move(coding.coded));
+        ZeroLevelStream stream = MeasuredZeroLevel(std::move(coding.coded), meter_, target_);
         ++measurements;
         if (coding.distortion > 0) bias = Square(stream.distance) / coding.distortion;
-        if (!best || IsBetter(stream, best->meets_target, best->stream.size(), best->psnr)) {
+        if (!best || IsBetter(OutcomeOf(stream), OutcomeOf(*best), target_)) {
           best = std::move(stream);
           best_distortion = distortion;
         }
@@ -265,6 +248,18 @@ class ZeroLevelSearch {
 
 }  // namespace
 
+ZeroLevelStream MeasuredZeroLevel(CodedZeroLevel coded, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
+                                  const SurfaceDistanceOptions& samples) {
+  ZeroLevelStream result;
+  result.stream = std::move(coded.stream);
+  result.coding = coded.coding;
+  result.mesh = std::move(coded.mesh);
+  result.distance = DecodedDistance(meter, result.mesh, samples);
+  result.psnr = Psnr(result.distance, meter.diagonal());
+  result.meets_target = target.is_rate ? static_cast<double>(result.stream.size()) <= target.bytes : result.psnr >= target.psnr;
+  return result;
+}
+
 StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                         const SearchEffort& effort) {
   const SimplificationSequence sequence(mesh);
@@ -285,7 +280,7 @@ StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mes
   if (!may_be_better) return result;
   LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, search.Finish());
   const auto bytes_to_beat = static_cast<size_t>((1 - kLevelsWorthBytes) * static_cast<double>(coded.stream.size()));
-  if (search.IsBetter(stream, coded.meets_target, bytes_to_beat, coded.psnr + kLevelsWorthPsnr)) result = std::move(stream);
+  if (IsBetter(OutcomeOf(stream), {coded.meets_target, bytes_to_beat, coded.psnr + kLevelsWorthPsnr}, target)) result = std::move(stream);
   return result;
 }
 

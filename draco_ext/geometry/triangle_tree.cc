@@ -456,6 +456,24 @@ ClosestPointResult TriangleTree::ClosestPointNear(const Vec3f& p, uint32_t hint)
   return Finish(search);
 }
 
+template <typename IsWanted, typename Visit>
+void TriangleTree::VisitLeaves(const IsWanted& is_wanted, const Visit& visit) const {
+  uint32_t stack[kStackSize];
+  int size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const Node& node = nodes_[stack[--size]];
+    for (int k = 0; k < kWidth; ++k) {
+      if (!is_wanted(node, k)) continue;
+      if (node.count[k] == 0) {
+        stack[size++] = node.child[k];
+      } else if (!visit(node.child[k], node.child[k] + node.count[k])) {
+        return;
+      }
+    }
+  }
+}
+
 void TriangleTree::PointsNear(const Vec3f& p, float max_squared_distance, size_t max_points,
                               std::vector<ClosestPointResult>* points) const {
   if (nodes_.empty() || !IsUsable(p) || !(max_squared_distance >= 0.0f)) return;
@@ -465,34 +483,27 @@ void TriangleTree::PointsNear(const Vec3f& p, float max_squared_distance, size_t
   search.SetBound(max_squared_distance);
   const size_t most = points->size() + max_points;
   const Vec3f local = p - origin_;
-  uint32_t stack[kStackSize];
-  int size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const Node& node = nodes_[stack[--size]];
-    for (int k = 0; k < kWidth; ++k) {
-      float d2 = 0.0f;
-      for (int axis = 0; axis < 3; ++axis) {
-        const float beyond = std::max(std::fabs(node.center[axis][k] - local[axis]) - node.half_size[axis][k], 0.0f);
-        d2 += beyond * beyond;
-      }
-      if (!(d2 < search.box_bound2)) continue;
-      if (node.count[k] == 0) {
-        stack[size++] = node.child[k];
-        continue;
-      }
-      for (uint32_t slot = node.child[k]; slot < node.child[k] + node.count[k]; ++slot) {
-        if (points->size() == most) return;
-        const Corners& t = corners_[slot];
-        if (ClosestOnTriangle(search.pd, Vec3Cast<double>(t[0]), Vec3Cast<double>(t[1]), Vec3Cast<double>(t[2]), search.bound2,
-                              &search.best) &&
-            search.best.squared_distance <= search.bound2) {
-          search.slot = slot;
-          points->push_back(Finish(search));
-        }
+  const auto is_near = [&](const Node& node, int k) {
+    float d2 = 0.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float beyond = std::max(std::fabs(node.center[axis][k] - local[axis]) - node.half_size[axis][k], 0.0f);
+      d2 += beyond * beyond;
+    }
+    return d2 < search.box_bound2;
+  };
+  VisitLeaves(is_near, [&](uint32_t first_slot, uint32_t end_slot) {
+    for (uint32_t slot = first_slot; slot < end_slot; ++slot) {
+      if (points->size() == most) return false;
+      const Corners& t = corners_[slot];
+      if (ClosestOnTriangle(search.pd, Vec3Cast<double>(t[0]), Vec3Cast<double>(t[1]), Vec3Cast<double>(t[2]), search.bound2,
+                            &search.best) &&
+          search.best.squared_distance <= search.bound2) {
+        search.slot = slot;
+        points->push_back(Finish(search));
       }
     }
-  }
+    return true;
+  });
 }
 
 double TriangleTree::Crowding() const {
@@ -503,19 +514,15 @@ double TriangleTree::Crowding() const {
   for (size_t i = 0; i < num_points; ++i) {
     const Corners& t = corners_[i * corners_.size() / num_points];
     const Vec3f point = (t[0] - origin_) * (1 / 3.0f) + (t[1] - origin_) * (1 / 3.0f) + (t[2] - origin_) * (1 / 3.0f);
-    uint32_t stack[kStackSize];
-    int size = 0;
-    stack[size++] = 0;
-    while (size > 0) {
-      const Node& node = nodes_[stack[--size]];
-      for (int k = 0; k < kWidth; ++k) {
-        bool is_inside = true;
-        for (int axis = 0; axis < 3; ++axis) is_inside = is_inside && std::fabs(node.center[axis][k] - point[axis]) <= node.half_size[axis][k];
-        if (!is_inside) continue;
-        faces += node.count[k];
-        if (node.count[k] == 0) stack[size++] = node.child[k];
-      }
-    }
+    const auto is_inside = [&](const Node& node, int k) {
+      bool inside = true;
+      for (int axis = 0; axis < 3; ++axis) inside = inside && std::fabs(node.center[axis][k] - point[axis]) <= node.half_size[axis][k];
+      return inside;
+    };
+    VisitLeaves(is_inside, [&](uint32_t first_slot, uint32_t end_slot) {
+      faces += end_slot - first_slot;
+      return true;
+    });
   }
   return static_cast<double>(faces) / static_cast<double>(num_points);
 }

@@ -95,6 +95,9 @@ class TriangleTree {
   void TestSlot(uint32_t slot, Search* search) const;
   ClosestPointResult Finish(const Search& search) const;
   void Traverse(Search* search) const;
+  // Calls visit(first slot, end slot) for the leaves below children for which is_wanted(node, child) holds, until it says false.
+  template <typename IsWanted, typename Visit>
+  void VisitLeaves(const IsWanted& is_wanted, const Visit& visit) const;
 
   std::vector<Node> nodes_;       // the first is the root; empty when there is no triangle
   std::vector<Corners> corners_;  // per slot

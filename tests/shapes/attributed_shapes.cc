@@ -90,6 +90,17 @@ VertexSoup TexturedBox(int n) {
   return soup;
 }
 
+std::vector<VertexSoup> BoxOfTwoGroups(int n) {
+  VertexSoup one = TexturedBox(n), rest = one;
+  const size_t side = one.triangles.size() / 6;
+  one.triangles.resize(side);
+  rest.triangles.erase(rest.triangles.begin(), rest.triangles.begin() + static_cast<std::ptrdiff_t>(side));
+  VertexSoup::Attribute color{"COLOR_0", AttributeKind::kColor, 3, {}};
+  for (const Vec3f& p : one.positions) color.values.insert(color.values.end(), {p.x, p.y, p.z});
+  one.attributes.push_back(std::move(color));
+  return {std::move(one), std::move(rest)};
+}
+
 std::vector<VertexSoup> HalvedTorus(int around, int tube) {
   std::vector<VertexSoup> halves;
   for (int half = 0; half < 2; ++half) {

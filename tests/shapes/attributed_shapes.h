@@ -18,6 +18,9 @@ VertexSoup TexturedGrid(int nx, int ny, float height = 0.0f);
 // The unit cube, n x n squares a side: each side fills the texture (TEXCOORD_0) and has one NORMAL, so that all edges are seams.
 VertexSoup TexturedBox(int n);
 
+// TexturedBox in two soups: one side, which has a COLOR_0 as well, and the others.
+std::vector<VertexSoup> BoxOfTwoGroups(int n);
+
 // A torus of radii 1 and 0.4 around the z axis, `around` x `tube` squares, with TEXCOORD_0 = the two angles / 2 pi and NORMAL: the texture
 // is cut once around and once along the tube, the normals are not. Two soups with a border at the angles 0 and pi around the axis.
 std::vector<VertexSoup> HalvedTorus(int around, int tube);

@@ -40,14 +40,7 @@ AttributedNormalMesh WavyCylinder(int num_levels) {
 
 // A box of two groups: one side, which has a color, and the others. All edges are seams of both attributes that all sides have.
 AttributedNormalMesh BoxOfTwoGroups(int num_levels) {
-  VertexSoup one = shapes::TexturedBox(2), rest = one;
-  const size_t side = one.triangles.size() / 6;
-  one.triangles.resize(side);
-  rest.triangles.erase(rest.triangles.begin(), rest.triangles.begin() + static_cast<ptrdiff_t>(side));
-  VertexSoup::Attribute color{"COLOR_0", AttributeKind::kColor, 3, {}};
-  for (const Vec3f& p : one.positions) color.values.insert(color.values.end(), {p.x, p.y, p.z});
-  one.attributes.push_back(std::move(color));
-  AttributedSemiRegularMesh mesh = shapes::SubdividedSoups({one, rest}, num_levels, [](Vec3f p) { return p; }, [](const LevelAttribute& a, float* row) {
+  AttributedSemiRegularMesh mesh = shapes::SubdividedSoups(shapes::BoxOfTwoGroups(2), num_levels, [](Vec3f p) { return p; }, [](const LevelAttribute& a, float* row) {
     if (a.kind == AttributeKind::kColor) row[0] *= row[0];
   });
   return {AsNormalMesh(std::move(mesh.surface)).value(), std::move(mesh.base_groups), std::move(mesh.attributes)};

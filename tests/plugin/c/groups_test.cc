@@ -13,6 +13,7 @@
 #include "draco/attributed_stream.h"
 #include "lacerta.h"
 #include "lacerta/attributed_base.h"
+#include "plugin/c/decoder_handle.h"
 #include "shapes/attributed_levels.h"
 #include "shapes/attributed_shapes.h"
 
@@ -20,6 +21,10 @@ namespace lacerta {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::Create;
+using testing::Decoder;
+using testing::Message;
+using testing::Progress;
 
 constexpr int kNumLevels = 2;
 
@@ -59,14 +64,7 @@ struct Box {
   }
 
   static AttributedStream Make() {
-    VertexSoup one = shapes::TexturedBox(2), rest = one;
-    const size_t side = one.triangles.size() / 6;
-    one.triangles.resize(side);
-    rest.triangles.erase(rest.triangles.begin(), rest.triangles.begin() + static_cast<ptrdiff_t>(side));
-    VertexSoup::Attribute color{"COLOR_0", AttributeKind::kColor, 3, {}};
-    for (const Vec3f& p : one.positions) color.values.insert(color.values.end(), {p.x, p.y, p.z});
-    one.attributes.push_back(std::move(color));
-    AttributedSemiRegularMesh mesh = shapes::SubdividedSoups({one, rest}, kNumLevels, [](Vec3f p) { return p * (1 + 0.1f * p.x * p.y); },
+    AttributedSemiRegularMesh mesh = shapes::SubdividedSoups(shapes::BoxOfTwoGroups(2), kNumLevels, [](Vec3f p) { return p * (1 + 0.1f * p.x * p.y); },
                                                              [](const LevelAttribute& a, float* row) {
                                                                if (a.kind == AttributeKind::kColor) row[0] *= row[0];
                                                              });
@@ -76,29 +74,6 @@ struct Box {
     return EncodeAttributedStream({AsNormalMesh(std::move(mesh.surface)).value(), std::move(mesh.base_groups), std::move(mesh.attributes)}, options).value();
   }
 };
-
-struct Destroy {
-  void operator()(lacerta_decoder* decoder) const { lacerta_decoder_destroy(decoder); }
-};
-using Decoder = std::unique_ptr<lacerta_decoder, Destroy>;
-
-Decoder Create(const lacerta_decoder_options& options) {
-  lacerta_decoder* decoder = nullptr;
-  EXPECT_EQ(lacerta_decoder_create(&options, &decoder), LACERTA_OK);
-  return Decoder(decoder);
-}
-
-std::string Message(const Decoder& decoder) {
-  std::string text(lacerta_decoder_message(decoder.get(), nullptr, 0), '\0');
-  lacerta_decoder_message(decoder.get(), text.data(), text.size() + 1);
-  return text;
-}
-
-lacerta_progress Progress(const Decoder& decoder) {
-  lacerta_progress progress = LACERTA_PROGRESS_INIT;
-  EXPECT_EQ(lacerta_decoder_get_progress(decoder.get(), &progress), LACERTA_OK);
-  return progress;
-}
 
 struct Read {
   VertexSoup soup;
@@ -153,7 +128,7 @@ void ExpectAllLevels(const Decoder& decoder, const Box& box) {
   for (const int level : {2, 0, 1, 2}) {
     const std::vector<VertexSoup> expected = box.Expected(level);
     for (uint32_t g = 0; g < 2; ++g) {
-      SCOPED_TRACE(testing::Message() << "level " << level << ", group " << g);
+      SCOPED_TRACE(::testing::Message() << "level " << level << ", group " << g);
       ExpectSame(ReadGroup(decoder, level, g, box.names).soup, expected[g]);
     }
   }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "lacerta/codec.h"
+#include "plugin/c/decoder_handle.h"
 
 namespace lacerta {
 namespace {
@@ -22,6 +23,10 @@ namespace {
 using ::testing::AnyOf;
 using ::testing::Each;
 using ::testing::HasSubstr;
+using testing::Create;
+using testing::Decoder;
+using testing::Message;
+using testing::Progress;
 
 const char* const kForms[] = {"draco_form.drc", "custom_form.drc", "custom_form_compact.drc"};
 
@@ -30,31 +35,8 @@ Bytes Golden(const std::string& name) {
   return Bytes(std::istreambuf_iterator<char>(file), {});
 }
 
-struct Destroy {
-  void operator()(lacerta_decoder* decoder) const { lacerta_decoder_destroy(decoder); }
-};
-using Decoder = std::unique_ptr<lacerta_decoder, Destroy>;
-
-Decoder Create(const lacerta_decoder_options* options = nullptr) {
-  lacerta_decoder* decoder = nullptr;
-  EXPECT_EQ(lacerta_decoder_create(options, &decoder), LACERTA_OK);
-  return Decoder(decoder);
-}
-
 lacerta_result Append(const Decoder& decoder, Span<const uint8_t> bytes, int32_t* level = nullptr) {
   return lacerta_decoder_append(decoder.get(), bytes.data(), bytes.size(), level);
-}
-
-std::string Message(const Decoder& decoder) {
-  std::string text(lacerta_decoder_message(decoder.get(), nullptr, 0), '\0');
-  lacerta_decoder_message(decoder.get(), text.data(), text.size() + 1);
-  return text;
-}
-
-lacerta_progress Progress(const Decoder& decoder) {
-  lacerta_progress progress = LACERTA_PROGRESS_INIT;
-  EXPECT_EQ(lacerta_decoder_get_progress(decoder.get(), &progress), LACERTA_OK);
-  return progress;
 }
 
 struct Read {
