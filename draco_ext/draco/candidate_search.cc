@@ -40,7 +40,7 @@ double UsualLambda(double psnr, double diagonal) {
 CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double remesh_psnr, const SurfaceDistanceMeter& meter,
                                  const ResolvedTarget& target, EncodeMode mode, const SearchEffort& effort)
     : candidate_(candidate), remesh_psnr_(remesh_psnr), meter_(meter), target_(target), mode_(mode), effort_(effort) {
-  start_ = std::log(UsualLambda(target_.is_rate ? kUsualPsnr : target_.psnr, meter_.diagonal()));
+  start_ = {std::log(UsualLambda(target_.is_rate ? kUsualPsnr : target_.psnr, meter_.diagonal())), kLogBytesPerDecibel};
 }
 
 double CandidateSearch::Goal() const {
@@ -99,7 +99,7 @@ bool CandidateSearch::IsBracket(const Bracket& b) const {
 
 // The next ln(lambda) to try: between the two attempts around the goal, or beyond the nearest one.
 double CandidateSearch::NextGuess() const {
-  if (values_.empty()) return start_;
+  if (values_.empty()) return start_.log_lambda;
   const auto [above, below] = AroundGoal();
   if (IsBracket({above, below})) {
     const double width = below->first - above->first;
@@ -120,41 +120,60 @@ bool CandidateSearch::CannotReach() const {
   return first->second < Goal() && second->first - first->first > kApart && (first->second - second->second) < 0.15 * (second->first - first->first);
 }
 
+double CandidateSearch::Miss(const Attempt& attempt) const {
+  return std::fabs(Goal() - attempt.value) / (target_.is_rate ? start_.log_bytes_per_decibel : 1.0);
+}
+
 double CandidateSearch::Merit(const Attempt& attempt) const {
   const double miss = Goal() - attempt.value;
-  return target_.is_rate ? -(attempt.psnr + miss / kLogBytesPerDecibel)
-                         : std::log(static_cast<double>(attempt.stream.size())) + kLogBytesPerDecibel * miss;
+  return target_.is_rate ? -(attempt.psnr + miss / start_.log_bytes_per_decibel)
+                         : std::log(static_cast<double>(attempt.stream.size())) + start_.log_bytes_per_decibel * miss;
+}
+
+// Noisy surfaces take two to three times the bits of smooth ones for a dB more.
+void CandidateSearch::LearnSlope(const Attempt& a, const Attempt& b) {
+  constexpr double kApart = 0.5;  // dB: nearer, and noise decides
+  constexpr double kFlattest = 0.05, kSteepest = 0.5;
+  const double decibels = CodingPsnr(a.psnr) - CodingPsnr(b.psnr);
+  if (std::fabs(decibels) < kApart) return;
+  const double log_bytes = std::log(static_cast<double>(a.stream.size()) / static_cast<double>(b.stream.size()));
+  start_.log_bytes_per_decibel = std::clamp(log_bytes / decibels, kFlattest, kSteepest);
 }
 
 StatusOr<double> CandidateSearch::Score() {
-  double score = std::numeric_limits<double>::infinity();
-  double least_miss = std::numeric_limits<double>::infinity();
+  std::optional<Attempt> nearest;
   for (int i = 0; i < kScoreTries; ++i) {
     const double log_lambda = NextGuess();
     steps_.last_detailed = candidate_.LastDetailed(std::exp(log_lambda));
-    LACERTA_ASSIGN_OR_RETURN(const Attempt attempt, Try(log_lambda, effort_.score_passes, 1));
-    const double miss = Goal() - attempt.value;
-    if (std::fabs(miss) >= least_miss) continue;
-    least_miss = std::fabs(miss);
-    start_ = log_lambda + miss / TypicalSlope();
-    score = Merit(attempt);
-    if (least_miss < kNearEnough * (target_.is_rate ? -kLogBytesPerDecibel : 1.0)) break;
+    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(log_lambda, effort_.score_passes, 1));
+    if (nearest) LearnSlope(*nearest, attempt);
+    if (!nearest || std::fabs(Miss(attempt)) < std::fabs(Miss(*nearest))) nearest = std::move(attempt);
+    if (std::fabs(Miss(*nearest)) < kNearEnough) break;
   }
-  return score;
+  start_.log_lambda = nearest->log_lambda + (Goal() - nearest->value) / TypicalSlope();
+  return Merit(*nearest);
+}
+
+StatusOr<CandidateSearch::Attempt> CandidateSearch::TryNearGoal(int passes) {
+  constexpr double kComparable = 0.7;  // dB: from farther off, extrapolation favors what hardly can reach the goal
+  LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(start_.log_lambda, passes, 1));
+  if (Miss(attempt) <= kComparable) return attempt;
+  LACERTA_ASSIGN_OR_RETURN(Attempt other, Try(start_.log_lambda + (Goal() - attempt.value) / TypicalSlope(), passes, 1));
+  return Miss(other) < Miss(attempt) ? std::move(other) : std::move(attempt);
 }
 
 // The law of the steps holds for surfaces on the whole; what suits this one is found by trying, one choice after the other, around the
 // slope that the target is thought to need.
 void CandidateSearch::SuitSteps() {
-  steps_.last_detailed = candidate_.LastDetailed(std::exp(start_));
+  steps_.last_detailed = candidate_.LastDetailed(std::exp(start_.log_lambda));
   double least = std::numeric_limits<double>::infinity();
   const auto improves = [&](const StepChoice& choice) {
     if (choice.last_detailed < 1 || choice.last_detailed > candidate_.num_levels()) return false;
     const StepChoice before = std::exchange(steps_, choice);
-    const StatusOr<Attempt> attempt = Try(start_, effort_.suit_passes, 1);
+    const StatusOr<Attempt> attempt = TryNearGoal(effort_.suit_passes);
     if (attempt.ok() && Merit(attempt.value()) < least) {
       least = Merit(attempt.value());
-      start_ += (Goal() - attempt.value().value) / TypicalSlope();
+      start_.log_lambda = attempt.value().log_lambda + (Goal() - attempt.value().value) / TypicalSlope();
       return true;
     }
     steps_ = before;

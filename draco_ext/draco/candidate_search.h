@@ -31,6 +31,12 @@ struct MeasuredStream {
   int measurements = 0;  // of the surface distance, rough ones too, that led to the stream
 };
 
+// Where on its curve a surface is thought to meet a target.
+struct SearchStart {
+  double log_lambda = 0;             // ln of squared model units per bit
+  double log_bytes_per_decibel = 0;  // slope of the curve there; the typical one until attempts have told
+};
+
 // The slope of the rate-distortion curve at which streams usually are of that PSNR, squared model units per bit.
 double UsualLambda(double psnr, double diagonal);
 
@@ -47,9 +53,9 @@ class CandidateSearch {
   // better.
   StatusOr<double> Score();
 
-  // ln(lambda) that is thought to meet the target; another search of the same surface may begin there.
-  double start() const { return start_; }
-  void BeginAt(double start) { start_ = start; }
+  // Another search of the same surface may begin there.
+  const SearchStart& start() const { return start_; }
+  void BeginAt(const SearchStart& start) { start_ = start; }
 
   // Codes until the target is met: bytes within 2 % and never over, or a PSNR less than 0.3 dB over and never under. Where that
   // fails, the attempt that comes nearest, with meets_target telling whether it keeps to the side promised. The surface distance is
@@ -70,7 +76,10 @@ class CandidateSearch {
   double Goal() const;  // the value aimed at
   // Of the distance that quantization alone may have where all have `psnr`: it follows the slope, while that of the remesh stays.
   double CodingPsnr(double psnr) const;
+  double Miss(const Attempt& attempt) const;   // dB between it and the goal, >= 0
   double Merit(const Attempt& attempt) const;  // what Score returns, as one attempt lets think
+  void LearnSlope(const Attempt& a, const Attempt& b);  // of the same surface at two values of lambda
+  StatusOr<Attempt> TryNearGoal(int passes);  // at the start, or nearer to the goal where that is far off
   void SuitSteps();
   StatusOr<MeasuredStream> MeetRate();
   StatusOr<MeasuredStream> MeetQuality();
@@ -91,7 +100,7 @@ class CandidateSearch {
   const ResolvedTarget target_;
   const EncodeMode mode_;
   const SearchEffort effort_;
-  double start_;                     // ln(lambda) to begin with
+  SearchStart start_;
   std::map<double, double> values_;  // of the attempts so far, by ln(lambda): ln(bytes) at a rate, else CodingPsnr of the estimate
   std::optional<double> offset_;     // dB that a measure showed more than the estimate, which hardly depends on lambda
   // How the steps follow from the slope of the coefficients: the slopes that give them, as multiples of it.

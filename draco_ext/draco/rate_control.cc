@@ -35,7 +35,7 @@ struct Rung {
   Status status;  // why there is no candidate, if so
   double remesh_psnr = 0;
   double score = std::numeric_limits<double>::infinity();  // of CandidateSearch::Score; infinite: cannot reach the target
-  double start = 0;                                        // of CandidateSearch::start, where there is a score
+  SearchStart start;                                       // of CandidateSearch::start, where there is a score
 };
 
 // Candidates that are taken to the target in all. No more are kept than are taken at a time: each is as large as the input.
@@ -121,8 +121,8 @@ class Ladder {
   bool IsMissing(int r) const { return r >= first_ && r <= last_ && rungs_.count(r) == 0; }
 
   // Where to begin the search at a rung: where the nearest one that was scored ended.
-  std::optional<double> StartOf(int number) const {
-    std::optional<double> start;
+  std::optional<SearchStart> StartOf(int number) const {
+    std::optional<SearchStart> start;
     int least = std::numeric_limits<int>::max();
     for (const auto& [r, rung] : rungs_) {
       if (!std::isfinite(rung.score) || std::abs(r - number) >= least) continue;
@@ -168,7 +168,7 @@ class Ladder {
   Status MakeAndScore(int number, Rung* rung) const {
     LACERTA_RETURN_IF_ERROR(Remesh(number, rung));
     constexpr double kHeadroom = 0.5;  // dB that quantization takes at least
-    if (const std::optional<double> start = StartOf(number)) rung->search->BeginAt(*start);
+    if (const std::optional<SearchStart> start = StartOf(number)) rung->search->BeginAt(*start);
     if (!target_.is_rate && rung->remesh_psnr < target_.psnr + kHeadroom) return Status();
     LACERTA_ASSIGN_OR_RETURN(rung->score, rung->search->Score());
     if (target_.quality_layers > 1) {  // a large base comes before all else: it costs prefixes what it saves at the end
