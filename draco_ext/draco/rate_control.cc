@@ -28,6 +28,13 @@ int LevelsFor(double num_base_vertices, double num_input_vertices) {
   return levels;
 }
 
+// That levels may bring a remesh to: six times the input's, and more where that is quickly decoded. Coarse inputs need it most: their
+// triangles are as large as what a stream of 70 dB may be wrong by.
+double MostVertices(double num_input_vertices) {
+  constexpr double kShare = 6, kLargestShare = 24, kQuicklyDecoded = 200'000;
+  return std::max(kShare * num_input_vertices, std::min(kLargestShare * num_input_vertices, kQuicklyDecoded));
+}
+
 // A base size that was tried.
 struct Rung {
   std::unique_ptr<NormalMeshCandidate> candidate;  // null once it was let go of
@@ -148,8 +155,7 @@ class Ladder {
   // Makes the candidate of a rung.
   Status Remesh(int number, Rung* rung) const {
     const double goal = TypicalPsnr(target_, num_input_);
-    constexpr double kComfort = 12;         // dB: a remesh nearer to the goal than that costs bytes...
-    constexpr double kMostVertices = 6.0;  // ...and gets one level more, up to so many times the input's vertices
+    constexpr double kComfort = 12;  // dB: a remesh nearer to the goal than that costs bytes and gets one level more
     for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
       LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate,
                                NormalMeshCandidate::Create(surface_, RungSize(number), levels, target_.base_coding));
@@ -159,7 +165,7 @@ class Ladder {
       LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(remesh, SurfaceDistanceOptions::RmsOnly(kRoughSamples)));
       rung->remesh_psnr = Psnr(distance.Rms(), meter_.diagonal());
       const double next_vertices = 4 * static_cast<double>(remesh.positions.size());
-      if (rung->remesh_psnr > goal + kComfort || next_vertices > kMostVertices * num_input_) break;
+      if (rung->remesh_psnr > goal + kComfort || next_vertices > MostVertices(num_input_)) break;
     }
     rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_, effort_);
     return Status();
