@@ -112,6 +112,13 @@ double CandidateSearch::NextGuess() const {
   return nearest->first + std::clamp(1.1 * step, -4.0, 4.0) + (step < 0 ? -0.02 : 0.02);
 }
 
+// The curve jumps over the goal between two slopes that are as good as the same.
+bool CandidateSearch::JumpsOverGoal() const {
+  constexpr double kSame = 0.02;  // of ln(lambda): 0.06 dB on a smooth curve
+  const Bracket bracket = AroundGoal();
+  return values_are_measured_ && IsBracket(bracket) && bracket.below->first - bracket.above->first < kSame;
+}
+
 // A finer slope no longer raises the PSNR: the remesh itself is the limit.
 bool CandidateSearch::CannotReach() const {
   if (!values_are_measured_ || values_.size() < 3) return false;
@@ -263,7 +270,7 @@ StatusOr<MeasuredStream> CandidateSearch::MeetQuality() {
   values_ = measured;
   values_are_measured_ = true;
   offset_ = 0;
-  for (int i = kEstimatedTries; i < kMeetTries && !is_done() && !CannotReach(); ++i) {
+  for (int i = kEstimatedTries; i < kMeetTries && !is_done() && !CannotReach() && !(excess(*best) >= 0 && JumpsOverGoal()); ++i) {
     const double log_lambda = NextGuess();
     StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes, target_.quality_layers);
     if (!tried.ok()) break;

@@ -92,6 +92,7 @@ class CandidateSearch {
   Bracket AroundGoal() const;
   bool IsBracket(const Bracket& bracket) const;
   double NextGuess() const;
+  bool JumpsOverGoal() const;
   bool CannotReach() const;
 
   const NormalMeshCandidate& candidate_;

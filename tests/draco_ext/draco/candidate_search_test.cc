@@ -69,6 +69,24 @@ TEST_F(CandidateSearchTest, ScoreForesees) {
   EXPECT_NEAR(-minus_psnr, PsnrOf(by_bytes.Meet().value().stream.FinestMesh()), 1.5);
 }
 
+// Where noise has to be coded a dB costs twice as much as usual: steps with which few bytes reach little must not look good.
+TEST(CandidateSearchOfNoiseTest, KeepsWhatItsScoreForesees) {
+  const TriangleMesh mesh = shapes::BumpySphere(5, 0.2f, 0.0005f);
+  const InputSurface surface(mesh, testing::TopologyOf(mesh));
+  const CollapseHistory history = testing::Decimated(mesh);
+  const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(mesh).value();
+  const NormalMeshCandidate candidate = NormalMeshCandidate::Create({surface, history, {}}, 250, 3).value();
+  const double remesh_psnr = Psnr(meter.Measure(candidate.RemeshedSurface()).value().Rms(), meter.diagonal());
+  for (const double psnr : {75.0, 77.0}) {
+    ASSERT_GT(remesh_psnr, psnr + 2);
+    CandidateSearch search(candidate, remesh_psnr, meter, {false, 0, psnr}, EncodeMode::kDefault);
+    const double log_bytes = search.Score().value();
+    const MeasuredStream met = search.Meet().value();
+    EXPECT_TRUE(met.meets_target);
+    EXPECT_NEAR(std::log(static_cast<double>(met.stream.size())), log_bytes, 0.2);
+  }
+}
+
 TEST_F(CandidateSearchTest, SaysWhereTheRemeshIsTheLimit) {
   CandidateSearch search = Search({false, 0, remesh_psnr_ + 5});
   const MeasuredStream stream = search.Meet().value();

@@ -75,6 +75,17 @@ TEST(CodeAtTargetTest, BasesGrowWithTheQualityAskedFor) {
   EXPECT_GE(4 * fine.measured.stream.size(), 5 * coarse.measured.stream.size());
 }
 
+// Its triangles are as large as what the stream may be wrong by, and few to decode.
+TEST(CodeAtTargetTest, CoarseInputsGetMoreVerticesThanTheyHave) {
+  const Coder coder(shapes::BumpySphere(3, 0.2f));
+  const double num_input = static_cast<double>(coder.mesh.positions.size());
+  const ChosenStream coarse = coder.Code({false, 0, 40}), fine = coder.Code({false, 0, 62});
+  EXPECT_TRUE(fine.measured.meets_target);
+  EXPECT_LT(static_cast<double>(coarse.measured.stream.decoded.positions.size()), 6 * num_input);
+  EXPECT_GT(static_cast<double>(fine.measured.stream.decoded.positions.size()), 6 * num_input);
+  EXPECT_LE(static_cast<double>(fine.measured.stream.decoded.positions.size()), 26 * num_input);
+}
+
 // Each keeps to itself, so this is all that the size of the input may change.
 TEST(CodeAtTargetTest, EffortTradesBaseSizesForBytes) {
   const Coder coder(shapes::BumpySphere(4, 0.2f, 0.002f));
