@@ -6,9 +6,7 @@
 #include "common/local_frame.h"
 
 namespace lacerta {
-namespace {
 
-// Moves the last #E of `positions`, the predicted midpoints of the edges of `coarse`, to where the coefficients want them.
 void AddDetails(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
   Vec3f* const midpoints = positions->data() + coarse.num_vertices;
   std::vector<std::pair<uint32_t, Vec3f>> details;  // added at last: frames depend on the predicted midpoints around
@@ -27,19 +25,11 @@ void AddDetails(const Topology& coarse, const LevelSteps& steps, const Quantized
   }
 }
 
-}  // namespace
-
 void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const LevelSteps& steps,
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
   positions->resize(size_t{coarse.num_vertices} + coarse.num_edges());
   PredictMidpoints(coarse, table, positions->data(), positions->data() + coarse.num_vertices);
   if (!steps.is_silent()) AddDetails(coarse, steps, quantized, positions);
-}
-
-void AppendMidpoints(const Topology& coarse, const std::vector<Vec3f>& midpoints, const LevelSteps& steps,
-                     const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
-  positions->insert(positions->end(), midpoints.begin(), midpoints.end());
-  AddDetails(coarse, steps, quantized, positions);
 }
 
 }  // namespace lacerta

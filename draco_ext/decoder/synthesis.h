@@ -20,9 +20,9 @@ namespace lacerta {
 void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const LevelSteps& steps,
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions);
 
-// The same where `midpoints`, PredictMidpoints of the positions, is at hand.
-void AppendMidpoints(const Topology& coarse, const std::vector<Vec3f>& midpoints, const LevelSteps& steps,
-                     const QuantizedLevel& quantized, std::vector<Vec3f>* positions);
+// The second half of that: moves the predicted midpoints, the last #E of `positions`, to where the coefficients want them. Nothing to do on
+// a silent level.
+void AddDetails(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, std::vector<Vec3f>* positions);
 
 }  // namespace lacerta
 

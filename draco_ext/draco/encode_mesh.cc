@@ -30,8 +30,9 @@ namespace {
 
 constexpr int kMostQualityLayers = 8;
 
-// Measured error of every state that `stream` decodes to.
-Status ReportLevels(const SurfaceDistanceMeter& meter, const CodedStream& stream, EncodeReport* report) {
+// Measured error of every state that the stream decodes to.
+Status ReportLevels(const SurfaceDistanceMeter& meter, const MeasuredStream& coded, const ResolvedTarget& target, EncodeReport* report) {
+  const CodedStream& stream = coded.stream;
   LACERTA_ASSIGN_OR_RETURN(ProgressiveDecoder decoder, ProgressiveDecoder::Create(stream.base_mesh, {}));
   LACERTA_ASSIGN_OR_RETURN(const RefinementInfo info, ReadRefinementInfo(stream.refinement));
   uint64_t bytes = 0;
@@ -47,9 +48,9 @@ Status ReportLevels(const SurfaceDistanceMeter& meter, const CodedStream& stream
       LACERTA_ASSIGN_OR_RETURN(mesh, MeshAtLevel(stream.decoded, static_cast<int>(i)));
     }
     constexpr uint64_t kCoarseSamples = 50'000;  // far from the input, where few tell as much as many
-    const bool is_last = i + 1 == stream.part_sizes.size();
-    const double distance =
-        DecodedDistance(meter, mesh, is_last ? SurfaceDistanceOptions::RmsOnly() : SurfaceDistanceOptions::RmsOnly(kCoarseSamples));
+    const bool is_last = i + 1 == stream.part_sizes.size(), is_measured = is_last && !target.is_rate;
+    const double distance = is_measured ? DistanceOfPsnr(coded.psnr, meter.diagonal())
+                                        : DecodedDistance(meter, mesh, is_last ? SurfaceDistanceOptions::RmsOnly() : SurfaceDistanceOptions::RmsOnly(kCoarseSamples));
     bytes += size;
     report->levels.push_back({mesh.positions.size(), mesh.triangles.size(), bytes, distance, Psnr(distance, meter.diagonal())});
   }
@@ -70,7 +71,7 @@ EncodedParts FromZeroLevel(ZeroLevelStream zero, EncodeReport report, std::strin
   return {{std::move(zero.stream), {size}, std::move(report)}, zero.coding};
 }
 
-StatusOr<EncodedParts> FromRefinement(const SurfaceDistanceMeter& meter, const ChosenStream& chosen, BaseCoding coding, EncodeReport report,
+StatusOr<EncodedParts> FromRefinement(const SurfaceDistanceMeter& meter, const ChosenStream& chosen, const ResolvedTarget& target, EncodeReport report,
                                       std::string reason) {
   report.progressive = true;
   report.reason = std::move(reason);
@@ -78,13 +79,13 @@ StatusOr<EncodedParts> FromRefinement(const SurfaceDistanceMeter& meter, const C
   report.remesh_psnr = chosen.remesh_psnr;
   const MeasuredStream& coded = chosen.measured;
   report.measurements = coded.measurements;
-  LACERTA_RETURN_IF_ERROR(ReportLevels(meter, coded.stream, &report));
+  LACERTA_RETURN_IF_ERROR(ReportLevels(meter, coded, target, &report));
   EncodedMesh result;
   result.stream = coded.stream.base;
   result.stream.insert(result.stream.end(), coded.stream.refinement.begin(), coded.stream.refinement.end());
   result.part_sizes = coded.stream.part_sizes;
   result.report = std::move(report);
-  return EncodedParts{std::move(result), coding};
+  return EncodedParts{std::move(result), target.base_coding};
 }
 
 // The target of base section and refinement that meets `target` in the form asked for.
@@ -198,7 +199,7 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, double crowding, 
   if (sequence) {
     LACERTA_ASSIGN_OR_RETURN(simpler, SimplerIfBetter(mesh, *sequence, meter, target, chosen->measured, EffortOf(options.effort)));
   }
-  if (!simpler) return FromRefinement(meter, *chosen, target.base_coding, report, ReasonForMiss(chosen->measured, target));
+  if (!simpler) return FromRefinement(meter, *chosen, target, report, ReasonForMiss(chosen->measured, target));
   report.subdivided_input = false;
   return FromZeroLevel(std::move(*simpler), report, ReasonForSimpler(*simpler, target));
 }

@@ -102,8 +102,12 @@ BaseMesh NormalMeshCandidate::BaseLattice(const TriangleMesh& base, double step)
   return lattice;
 }
 
-StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope, EncodeMode mode) const {
-  if (mode == EncodeMode::kPaper) return CodeByModel(normal_mesh_.mesh, slope.lambda);
+StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope, EncodeMode mode, std::vector<Vec3f>* decoded) const {
+  if (mode == EncodeMode::kPaper) {
+    LACERTA_ASSIGN_OR_RETURN(CodedSurface coded, CodeByModel(normal_mesh_.mesh, slope.lambda));
+    *decoded = Synthesize(target_, coded);
+    return coded;
+  }
   const std::vector<Vec3f> base(target_.points.begin(), target_.points.begin() + num_base_vertices());
   const BaseMesh lattice = BaseLattice({base, normal_mesh_.mesh.base_triangles}, BaseStepForSlope(slope.base_lambda));
   DescentOptions options;
@@ -115,20 +119,25 @@ StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope
     constexpr size_t kTriedSilentLevels = 1;
     for (size_t i = static_cast<size_t>(slope.last_detailed) + kTriedSilentLevels; i < steps.size(); ++i) steps[i] = LevelSteps();
   }
-  CodedSurface coded = Descend(target_, QuantizeClosedLoop(target_, lattice, steps), options);
-  if (target_.keeps_vertices) RepairVertices(target_, &coded);
+  CodedSurface coded = QuantizeClosedLoop(target_, lattice, steps, decoded);
+  coded = Descend(target_, std::move(coded), options, decoded);
+  if (target_.keeps_vertices) {
+    RepairVertices(target_, &coded);
+    *decoded = Synthesize(target_, coded);
+  }
   return coded;
 }
 
 StatusOr<CodedStream> NormalMeshCandidate::Code(const CodingSlope& slope, EncodeMode mode) const {
-  LACERTA_ASSIGN_OR_RETURN(const CodedSurface coded, CodeSurface(slope, mode));
+  std::vector<Vec3f> decoded;
+  LACERTA_ASSIGN_OR_RETURN(const CodedSurface coded, CodeSurface(slope, mode, &decoded));
   CodedStream stream;
   LACERTA_ASSIGN_OR_RETURN(stream.base, RecodeBaseMesh(base_, coded.base));
   LACERTA_ASSIGN_OR_RETURN(RefinementBytes refinement, Write(coded, slope));
   stream.part_sizes = {stream.base.size()};
   stream.part_sizes.insert(stream.part_sizes.end(), refinement.part_sizes.begin(), refinement.part_sizes.end());
   stream.refinement = std::move(refinement.bytes);
-  stream.decoded = {normal_mesh_.mesh.base_triangles, num_base_vertices(), target_.num_levels(), Synthesize(target_, coded),
+  stream.decoded = {normal_mesh_.mesh.base_triangles, num_base_vertices(), target_.num_levels(), std::move(decoded),
                     normal_mesh_.mesh.tags};
   stream.plane_distortion = PlaneDistortion(target_, stream.decoded.positions);
   stream.triangles = FinestTriangles();

@@ -72,7 +72,8 @@ class NormalMeshCandidate {
 
  private:
   BaseMesh BaseLattice(const TriangleMesh& base, double step) const;
-  StatusOr<CodedSurface> CodeSurface(const CodingSlope& slope, EncodeMode mode) const;
+  // decoded: becomes what a decoder makes of it.
+  StatusOr<CodedSurface> CodeSurface(const CodingSlope& slope, EncodeMode mode, std::vector<Vec3f>* decoded) const;
   StatusOr<RefinementBytes> Write(const CodedSurface& coded, const CodingSlope& slope) const;
   std::vector<Triangle> FinestTriangles() const;  // in the order of MeshAtLevel
 

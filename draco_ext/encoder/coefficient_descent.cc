@@ -26,9 +26,22 @@ std::vector<Vec3f> LatticePoints(const BaseMesh& base) {
   return points;
 }
 
-// Appends the vertices of level `level` (1 .. L) to the positions of the coarser ones.
+// Moves the predicted vertices of level `level` (1 .. L), the last ones, to where its coefficients want them.
+void AddLevelDetails(const SurfaceTarget& target, const CodedSurface& coded, int level, std::vector<Vec3f>* positions) {
+  const LevelSteps& steps = coded.steps[level - 1];
+  if (!steps.is_silent()) AddDetails(target.topologies[level - 1], steps, coded.levels[level - 1], positions);
+}
+
+// Appends the vertices of level `level` (1 .. L) to the positions of the coarser ones. predicted: of them, where it is at hand.
 void AppendLevel(const SurfaceTarget& target, const CodedSurface& coded, int level, std::vector<Vec3f>* positions) {
-  SynthesizeLevel(target.topologies[level - 1], target.stencils, coded.steps[level - 1], coded.levels[level - 1], positions);
+  const size_t num_coarse = positions->size();
+  positions->resize(num_coarse + target.topologies[level - 1].num_edges());
+  target.midpoints[level - 1].Predict(positions->data(), positions->data() + num_coarse);
+  AddLevelDetails(target, coded, level, positions);
+}
+void AppendLevel(const SurfaceTarget& target, const CodedSurface& coded, int level, const std::vector<Vec3f>& predicted, std::vector<Vec3f>* positions) {
+  positions->insert(positions->end(), predicted.begin(), predicted.end());
+  AddLevelDetails(target, coded, level, positions);
 }
 
 // The quantized value that lowers distortion + lambda * bits most: near the bottom of the parabola, or nearer to zero. The
@@ -76,7 +89,7 @@ void DescendBase(const SurfaceTarget& target, std::vector<Vec3f> gradient, BaseM
 }
 
 // Chooses the details of level `level` (1 .. L) and advances the state of the entropy coder over them.
-//   positions  of the coarser level; predicted: PredictMidpoints there
+//   positions  of the coarser level; predicted: midpoints there
 //   gradient   for LocalModel
 void DescendLevel(const SurfaceTarget& target, int level, const std::vector<Vec3f>& positions, const std::vector<Vec3f>& predicted,
                   std::vector<Vec3f> gradient, const DescentOptions& options, CodedSurface* coded, CodingState* state) {
@@ -125,20 +138,19 @@ void DescendOnce(const SurfaceTarget& target, const DescentOptions& options, Cod
   CodingState state;
   const int last_active = LastActiveLevel(coded->steps);
   for (int level = 1; level <= last_active; ++level) {
-    const Topology& coarse = target.topologies[level - 1];
     state.normal_continues = level < last_active && coded->steps[level].normal_step > 0;
     state.tangential_continues = level < last_active && coded->steps[level].tangential_step > 0;
-    const std::vector<Vec3f> predicted = PredictMidpoints(coarse, target.stencils, *positions);
+    const std::vector<Vec3f> predicted = target.midpoints[level - 1].Predict(*positions);
     const int ahead = LevelAhead(target, level);
     std::vector<Vec3f> present = *positions;  // on the level ahead, with the coefficients so far
-    AppendMidpoints(coarse, predicted, coded->steps[level - 1], coded->levels[level - 1], &present);
+    AppendLevel(target, *coded, level, predicted, &present);
     if (ahead > level) AppendLevel(target, *coded, ahead, &present);
     std::vector<Vec3f> gradient = gradients[ahead];
     for (size_t v = 0; v < gradient.size(); ++v) {
       gradient[v] += Weigh(target, v, present[v] - before[v]) * target.masses[ahead][v];
     }
     DescendLevel(target, level, *positions, predicted, std::move(gradient), options, coded, &state);
-    AppendMidpoints(coarse, predicted, coded->steps[level - 1], coded->levels[level - 1], positions);
+    AppendLevel(target, *coded, level, predicted, positions);
   }
   for (int level = last_active + 1; level <= target.num_levels(); ++level) AppendLevel(target, *coded, level, positions);
 }
@@ -164,9 +176,9 @@ std::vector<SetBits> CountBits(const SurfaceTarget& target, CodedSurface coded) 
 }
 
 // Leaves out whole sets, finest first, where that saves more rate than it costs distortion: zeros are cheap, not free.
-//   positions  Synthesize of `coded`
-void DropIdleSets(const SurfaceTarget& target, double lambda, std::vector<Vec3f> positions, CodedSurface* coded) {
-  double distortion = SurfaceDistortion(target, positions);
+//   positions  Synthesize of `coded`, on entry and on return
+void DropIdleSets(const SurfaceTarget& target, double lambda, CodedSurface* coded, std::vector<Vec3f>* positions) {
+  double distortion = SurfaceDistortion(target, *positions);
   const auto try_without = [&](float LevelSteps::*step, std::vector<int32_t> QuantizedLevel::*set, size_t i, double bits) {
     if (bits == 0) return;
     std::vector<int32_t>& values = coded->levels[i].*set;
@@ -174,7 +186,7 @@ void DropIdleSets(const SurfaceTarget& target, double lambda, std::vector<Vec3f>
     if (!is_silent) {
       std::vector<int32_t> kept(values.size(), 0);
       values.swap(kept);
-      std::vector<Vec3f> without(positions.begin(), positions.begin() + target.topologies[i].num_vertices);
+      std::vector<Vec3f> without(positions->begin(), positions->begin() + target.topologies[i].num_vertices);
       for (int level = static_cast<int>(i) + 1; level <= target.num_levels(); ++level) AppendLevel(target, *coded, level, &without);
       const double raised = SurfaceDistortion(target, without);
       if (raised - distortion > lambda * bits) {
@@ -182,7 +194,7 @@ void DropIdleSets(const SurfaceTarget& target, double lambda, std::vector<Vec3f>
         return;
       }
       distortion = raised;
-      positions = std::move(without);
+      *positions = std::move(without);
     }
     coded->steps[i].*step = 0;
   };
@@ -191,6 +203,37 @@ void DropIdleSets(const SurfaceTarget& target, double lambda, std::vector<Vec3f>
     try_without(&LevelSteps::tangential_step, &QuantizedLevel::tangential, i, bits[i].tangential);
     try_without(&LevelSteps::normal_step, &QuantizedLevel::normal, i, bits[i].normal);
   }
+}
+
+// The details of level `level` (1 .. L) against `predicted`, rounded.
+//   positions  of the coarser level, decoded
+QuantizedLevel QuantizeLevel(const SurfaceTarget& target, int level, const std::vector<Vec3f>& positions, const std::vector<Vec3f>& predicted,
+                             const LevelSteps& step) {
+  const Topology& coarse = target.topologies[level - 1];
+  QuantizedLevel quantized;
+  quantized.normal.resize(coarse.num_edges());
+  quantized.tangential.resize(size_t{2} * coarse.num_edges());
+  if (step.is_silent()) return quantized;
+  const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
+  for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
+    if (coarse.is_copy(e)) continue;
+    const uint32_t v = coarse.num_vertices + e;
+    const Vec3f detail = target.points[v] - predicted[e];
+    const Vec3f local = frames[e].ToLocal(detail);
+    const float on_plane = Dot(detail, target.normals[v]) / Dot(frames[e].normal, target.normals[v]);
+    // Where the tangent plane stands too steep the normal line meets it far away, or never.
+    constexpr float kMaxSlide = 0.1f;  // of the edge
+    const float edge = Norm(positions[coarse.edges[e][1]] - positions[coarse.edges[e][0]]);
+    const bool slides = std::fabs(on_plane - local.z) <= kMaxSlide * edge;  // false for NaN and infinity
+    if (slides && target.piercing[v - target.topologies[0].num_vertices] == PiercingKind::kNormal) {
+      quantized.normal[e] = RoundToStep(on_plane, step.normal_step);
+      continue;
+    }
+    quantized.tangential[2 * e] = RoundToStep(local.x, step.tangential_step);
+    quantized.tangential[2 * e + 1] = RoundToStep(local.y, step.tangential_step);
+    quantized.normal[e] = RoundToStep(local.z, step.normal_step);
+  }
+  return quantized;
 }
 
 }  // namespace
@@ -247,45 +290,24 @@ double SurfaceDistortion(const SurfaceTarget& target, const std::vector<Vec3f>& 
   return sum;
 }
 
-CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& base, const std::vector<LevelSteps>& steps) {
+CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& base, const std::vector<LevelSteps>& steps,
+                                std::vector<Vec3f>* positions) {
   CodedSurface coded{base, steps, {}};
-  std::vector<Vec3f> positions = LatticePoints(base);
+  std::vector<Vec3f> decoded = LatticePoints(base);
   for (int level = 1; level <= target.num_levels(); ++level) {
-    const Topology& coarse = target.topologies[level - 1];
-    const LevelSteps& step = steps[level - 1];
-    const std::vector<Vec3f> predicted = PredictMidpoints(coarse, target.stencils, positions);
-    const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
-    QuantizedLevel quantized;
-    quantized.normal.resize(coarse.num_edges());
-    quantized.tangential.resize(size_t{2} * coarse.num_edges());
-    for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-      if (coarse.is_copy(e)) continue;
-      const uint32_t v = coarse.num_vertices + e;
-      const Vec3f detail = target.points[v] - predicted[e];
-      const Vec3f local = frames[e].ToLocal(detail);
-      const float on_plane = Dot(detail, target.normals[v]) / Dot(frames[e].normal, target.normals[v]);
-      // Where the tangent plane stands too steep the normal line meets it far away, or never.
-      constexpr float kMaxSlide = 0.1f;  // of the edge
-      const float edge = Norm(positions[coarse.edges[e][1]] - positions[coarse.edges[e][0]]);
-      const bool slides = std::fabs(on_plane - local.z) <= kMaxSlide * edge;  // false for NaN and infinity
-      if (slides && target.piercing[v - base.lattice.size()] == PiercingKind::kNormal) {
-        quantized.normal[e] = RoundToStep(on_plane, step.normal_step);
-        continue;
-      }
-      quantized.tangential[2 * e] = RoundToStep(local.x, step.tangential_step);
-      quantized.tangential[2 * e + 1] = RoundToStep(local.y, step.tangential_step);
-      quantized.normal[e] = RoundToStep(local.z, step.normal_step);
-    }
-    AppendMidpoints(coarse, predicted, step, quantized, &positions);
-    coded.levels.push_back(std::move(quantized));
+    const std::vector<Vec3f> predicted = target.midpoints[level - 1].Predict(decoded);
+    coded.levels.push_back(QuantizeLevel(target, level, decoded, predicted, steps[level - 1]));
+    AppendLevel(target, coded, level, predicted, &decoded);
   }
+  if (positions != nullptr) *positions = std::move(decoded);
   return coded;
 }
 
-CodedSurface Descend(const SurfaceTarget& target, CodedSurface coded, const DescentOptions& options) {
-  std::vector<Vec3f> positions = Synthesize(target, coded);
-  for (int pass = 0; pass < options.passes; ++pass) DescendOnce(target, options, &coded, &positions);
-  if (!target.keeps_vertices && options.finer == nullptr) DropIdleSets(target, options.lambda, std::move(positions), &coded);  // by distance to the surface alone
+CodedSurface Descend(const SurfaceTarget& target, CodedSurface coded, const DescentOptions& options, std::vector<Vec3f>* positions) {
+  std::vector<Vec3f> present = positions != nullptr ? std::move(*positions) : Synthesize(target, coded);
+  for (int pass = 0; pass < options.passes; ++pass) DescendOnce(target, options, &coded, &present);
+  if (!target.keeps_vertices && options.finer == nullptr) DropIdleSets(target, options.lambda, &coded, &present);  // by distance to the surface alone
+  if (positions != nullptr) *positions = std::move(present);
   return coded;
 }
 

@@ -47,10 +47,12 @@ std::vector<Vec3f> Synthesize(const SurfaceTarget& target, const CodedSurface& c
 
 // Closed loop: each detail is taken against the decoded coarser level and rounded. Vertices found by piercing slide along the
 // input's tangent plane onto the normal line and need no tangential part.
-CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& base, const std::vector<LevelSteps>& steps);
+// positions: becomes Synthesize of that, where given.
+CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& base, const std::vector<LevelSteps>& steps,
+                                std::vector<Vec3f>* positions = nullptr);
 
-// Improves `coded`, whose steps stay as they are.
-CodedSurface Descend(const SurfaceTarget& target, CodedSurface coded, const DescentOptions& options);
+// Improves `coded`, whose steps stay as they are. positions: where given, Synthesize of the surface on entry and of that returned on return.
+CodedSurface Descend(const SurfaceTarget& target, CodedSurface coded, const DescentOptions& options, std::vector<Vec3f>* positions = nullptr);
 
 // Mean squared distance of a surface to the planes of the target, over the area of the finest level, squared model units: distances vary
 // linearly over a triangle. With the squared distance of the unquantized remesh added it foretells the measured one within some hundredths

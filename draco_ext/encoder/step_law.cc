@@ -19,7 +19,7 @@ constexpr double kBaseVertices = 2.5e4;    // the base lattice is as fine as the
 std::vector<double> DetailLengths(const SurfaceTarget& target, int level) {
   const Topology& coarse = target.topologies[level - 1];
   const std::vector<Vec3f> positions(target.points.begin(), target.points.begin() + coarse.num_vertices);
-  const std::vector<Vec3f> predicted = PredictMidpoints(coarse, target.stencils, positions);
+  const std::vector<Vec3f> predicted = target.midpoints[level - 1].Predict(positions);
   const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
   std::vector<double> lengths;
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {

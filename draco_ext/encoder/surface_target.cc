@@ -96,8 +96,10 @@ StencilSpread SpreadStencils(const Topology& topology, const StencilTable& table
 SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
   std::vector<Topology> topologies = {BuildTopology(mesh.mesh.num_base_vertices, mesh.mesh.base_triangles, mesh.mesh.tags).value()};
   StencilTable stencils(topologies[0]);
+  std::vector<MidpointStencils> midpoints;
   std::vector<StencilSpread> spreads;
   for (int level = 0; level < mesh.mesh.num_levels; ++level) {
+    midpoints.emplace_back(topologies.back(), stencils);
     spreads.push_back(SpreadStencils(topologies.back(), stencils));
     topologies.push_back(Refine(topologies.back()));
   }
@@ -109,8 +111,8 @@ SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
   }
   std::vector<uint32_t> next_twin = ChainTwins(mesh.mesh.tags.joined, topologies);
   topologies.back() = WithoutEdges(std::move(topologies.back()));
-  SurfaceTarget target{std::move(topologies), std::move(stencils), std::move(spreads), mesh.mesh.positions, mesh.surface_normals, std::move(areas),
-                       std::move(masses),     {},                  mesh.piercing,      std::move(next_twin), mesh.keeps_vertices};
+  SurfaceTarget target{std::move(topologies), std::move(stencils), std::move(midpoints), std::move(spreads), mesh.mesh.positions, mesh.surface_normals,
+                       std::move(areas),      std::move(masses),    {},                   mesh.piercing,      std::move(next_twin), mesh.keeps_vertices};
   for (int level = 0; level <= target.num_levels(); ++level) target.curvatures.push_back(Curvatures(target, level));
   return target;
 }

@@ -11,6 +11,7 @@
 
 #include "common/butterfly.h"
 #include "common/subdivision.h"
+#include "encoder/midpoint_stencils.h"
 #include "lacerta/mesh.h"
 #include "lacerta/remesh.h"
 #include "lacerta/status.h"
@@ -48,6 +49,7 @@ struct SymmetricMatrix {
 struct SurfaceTarget {
   std::vector<Topology> topologies;           // of levels 0 .. L, the finest one without its edges
   StencilTable stencils;
+  std::vector<MidpointStencils> midpoints;    // of levels 0 .. L-1
   std::vector<StencilSpread> spreads;         // of levels 0 .. L-1
   std::vector<Vec3f> points;                  // #V of the finest level: points of the input
   std::vector<Vec3f> normals;                 // #V, unit
