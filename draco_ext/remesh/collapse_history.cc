@@ -33,7 +33,7 @@ CollapseHistory::CollapseHistory(const Topology& topology)
       faces_(topology.triangles),
       curve_sides_(topology.num_faces(), 0),
       created_by_(topology.num_faces(), kNone),
-      destroyed_by_(topology.num_faces(), kNone) {
+      ends_(topology.num_faces()) {
   for (uint32_t f = 0; f < topology.num_faces(); ++f) {
     for (int k = 0; k < 3; ++k) curve_sides_[f] |= static_cast<uint8_t>(topology.on_curve[topology.face_edges[f][k]] << k);
   }
@@ -53,14 +53,12 @@ uint32_t CollapseHistory::Append(uint32_t removed, const std::vector<uint32_t>& 
   std::vector<uint8_t> curve_spoke(k, 0), curve_side(k, 0);
   for (int i = 0; i < static_cast<int>(old_faces.size()); ++i) {
     const uint32_t f = old_faces[i];
-    destroyed_by_[f] = time;
     const int corner = faces_[f][0] == removed ? 0 : faces_[f][1] == removed ? 1 : 2;
-    rotations_.push_back(static_cast<uint8_t>(corner));
+    ends_[f] = {time, static_cast<uint16_t>(i), static_cast<uint8_t>(corner)};
     curve_side[i] = is_curve(f, corner);
     curve_spoke[i] |= static_cast<uint8_t>(is_curve(f, (corner + 2) % 3));
     curve_spoke[(i + 1) % k] |= static_cast<uint8_t>(is_curve(f, (corner + 1) % 3));
   }
-  rotations_.resize(ring_positions_.size(), 0);
   // v was on a curve to p_j and one other neighbor: the edge between them is on it now, the side p_{k-1} p_0 on the border.
   if (curve_spoke[kept]) {
     if (static_cast<int>(old_faces.size()) < k) curve_side[k - 1] = 1;
@@ -74,7 +72,7 @@ uint32_t CollapseHistory::Append(uint32_t removed, const std::vector<uint32_t>& 
     faces_.push_back({ring[kept], ring[a], ring[b]});
     curve_sides_.push_back(static_cast<uint8_t>(curve_side[a] | to_b << 1 | to_a << 2));
     created_by_.push_back(time);
-    destroyed_by_.push_back(kNone);
+    ends_.emplace_back();
   }
   return first_new;
 }
@@ -103,20 +101,35 @@ std::vector<uint32_t> CollapseHistory::FacesAt(const HistoryCut& cut) const {
   std::vector<uint32_t> alive;
   for (uint32_t f = 0; f < faces_.size(); ++f) {
     const bool born = created_by_[f] == kNone || cut.Has(created_by_[f]);
-    if (born && !cut.Has(destroyed_by_[f])) alive.push_back(f);  // kNone is the largest time of all
+    if (born && !cut.Has(ends_[f].collapse)) alive.push_back(f);  // kNone is the largest time of all
   }
   return alive;
 }
 
-DomainPoint CollapseHistory::ForwardOnce(const DomainPoint& point, const Collapse& c) const {
+DomainPoint CollapseHistory::ForwardOnce(const DomainPoint& point, const End& end) const {
+  const Collapse& c = collapses_[end.collapse];
   const Vec2d* ring = &ring_positions_[c.first_ring];
-  const uint32_t* old = &old_faces_[c.first_ring];
   const int k = c.valence;
-  const int i = static_cast<int>(std::find(old, old + c.num_old_faces, point.face) - old);
-  const int r = rotations_[c.first_ring + i];
-  const double w1 = point.barycentric[(r + 1) % 3], w2 = point.barycentric[(r + 2) % 3];
-  const Vec2d &p1 = ring[i], &p2 = ring[(i + 1) % k];
+  const double w1 = point.barycentric[(end.corner + 1) % 3], w2 = point.barycentric[(end.corner + 2) % 3];
+  const Vec2d &p1 = ring[end.spoke], &p2 = ring[end.spoke + 1 == k ? 0 : end.spoke + 1];
   const Vec2d q = {w1 * p1.x + w2 * p2.x, w1 * p1.y + w2 * p2.y};  // v is the origin
+  // The new faces are a fan around the vertex kept. Signs tell which of them q may be in; only there weights are computed.
+  const Vec2d& apex = ring[c.kept];
+  const Vec2d to_q = Minus(q, apex);
+  const auto next = [k](int i) { return i + 1 == k ? 0 : i + 1; };
+  int spoke = next(c.kept);
+  bool is_left = CrossProduct(Minus(ring[spoke], apex), to_q) >= 0;  // of the spoke
+  for (int m = 0; m < k - 2; ++m) {
+    const int next_spoke = next(spoke);
+    const double beyond = CrossProduct(Minus(ring[next_spoke], apex), to_q);
+    if (is_left && beyond <= 0) {
+      const Vec3d w = BarycentricIn(q, apex, ring[spoke], ring[next_spoke]);
+      if (MinWeight(w) >= 0) return {c.first_new_face + static_cast<uint32_t>(m), ClampWeights(w)};
+    }
+    is_left = beyond >= 0;
+    spoke = next_spoke;
+  }
+  // In none, by rounding or beyond the border: the one that it is least far out of.
   double best = -std::numeric_limits<double>::max();
   DomainPoint result{c.first_new_face, {1, 0, 0}};
   for (int m = 0; m < k - 2; ++m) {
@@ -124,7 +137,6 @@ DomainPoint CollapseHistory::ForwardOnce(const DomainPoint& point, const Collaps
     if (MinWeight(w) <= best) continue;
     best = MinWeight(w);
     result = {c.first_new_face + static_cast<uint32_t>(m), w};
-    if (best >= 0) break;
   }
   result.barycentric = ClampWeights(result.barycentric);
   return result;
@@ -150,13 +162,13 @@ DomainPoint CollapseHistory::BackwardOnce(const DomainPoint& point, const Collap
   }
   best_weights = ClampWeights(best_weights);
   DomainPoint result{old_faces_[c.first_ring + best_i], {}};
-  const int r = rotations_[c.first_ring + best_i];
+  const int r = ends_[result.face].corner;
   for (int corner = 0; corner < 3; ++corner) result.barycentric[(r + corner) % 3] = best_weights[corner];
   return result;
 }
 
 DomainPoint CollapseHistory::Forward(DomainPoint point, const HistoryCut& cut) const {
-  while (cut.Has(destroyed_by_[point.face])) point = ForwardOnce(point, collapses_[destroyed_by_[point.face]]);
+  while (cut.Has(ends_[point.face].collapse)) point = ForwardOnce(point, ends_[point.face]);
   return point;
 }
 

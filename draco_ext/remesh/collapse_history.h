@@ -78,24 +78,31 @@ class CollapseHistory {
 
  private:
   struct Collapse {
-    size_t first_ring;       // into ring_positions_, old_faces_, rotations_: #k each
+    size_t first_ring;       // into ring_positions_ and old_faces_: #k each
     uint32_t first_new_face;
     uint16_t valence;        // k
     uint16_t num_old_faces;  // k, or k - 1 on the border
     uint16_t kept;           // j
     uint32_t removed;
   };
-  DomainPoint ForwardOnce(const DomainPoint& point, const Collapse& c) const;
+  // How a face ends: as (v, p_spoke, p_spoke+1) of a collapse, where its corner `corner` is v. All that the walk needs of a face, in 8 bytes:
+  // the walk is as fast as memory is.
+  struct End {
+    uint32_t collapse = kNone;  // kNone: it does not
+    uint16_t spoke = 0;
+    uint8_t corner = 0;
+  };
+  DomainPoint ForwardOnce(const DomainPoint& point, const End& end) const;
   DomainPoint BackwardOnce(const DomainPoint& point, const Collapse& c) const;
 
   std::vector<CurveRole> roles_;                     // per vertex of the input
   std::vector<Triangle> faces_;
   std::vector<uint8_t> curve_sides_;                 // per face: bit k for the side opposite to corner k
-  std::vector<uint32_t> created_by_, destroyed_by_;  // per face: collapse, or kNone
+  std::vector<uint32_t> created_by_;                 // per face: collapse, or kNone
+  std::vector<End> ends_;                            // per face
   std::vector<Collapse> collapses_;
   std::vector<Vec2d> ring_positions_;
   std::vector<uint32_t> old_faces_;  // kNone after the last one on the border
-  std::vector<uint8_t> rotations_;  // corner of the old face at which v stands
 };
 
 }  // namespace lacerta

@@ -50,6 +50,7 @@ class Decimator {
  private:
   Fan FanOf(uint32_t v) const;
   Candidate BestCandidate(uint32_t v, const Fan& fan) const;  // of a vertex of at most kMaxRing faces
+  double LeastCost(uint32_t v, uint32_t kept) const;
   double Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& chart, const std::vector<Vec3d>& old_normals, int kept) const;
   bool KeepsTopology(const Fan& fan, int kept) const;
   bool CanLoseAFace(uint32_t v) const;
@@ -232,6 +233,15 @@ bool Decimator::KeepsTopology(const Fan& fan, int kept) const {
   return true;
 }
 
+// What Cost is before its penalties, which are factors of 1 or more.
+double Decimator::LeastCost(uint32_t v, uint32_t kept) const {
+  Quadric q = quadrics_[v];
+  q += quadrics_[kept];
+  // The small second term orders flat regions by edge length; relative to the input's scale, it is nothing elsewhere.
+  const double edge = SquaredNorm(positions_[kept] - positions_[v]);
+  return q.Evaluate(positions_[kept]) + 1e-6 * edge * length_scale_;
+}
+
 double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& chart, const std::vector<Vec3d>& old_normals,
                        int kept) const {
   const int k = fan.size();
@@ -251,8 +261,6 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
     worst_aspect = std::max(worst_aspect, edges / (2 * std::sqrt(3.0) * area2));  // 1 for the equilateral triangle
   }
   if (!KeepsTopology(fan, kept)) return kNotSound;
-  Quadric q = quadrics_[v];
-  q += quadrics_[u];
   const double valence = static_cast<double>(vertex_faces_[u].size() + fan.faces.size()) - 4;
   // A triangle that stands for much more of the input than its own area hides a limb that its samples will miss: quadrics see
   // only how far the limb's sides are away, which is not much, not how long it is (docs/decisions/0004-limbs.md).
@@ -262,10 +270,7 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
   // Nor is a triangle of much use that faces away from the input at its own corners.
   const double turning_penalty = 1 + 5 * std::max(0.0, -worst_cosine);
   const double valence_penalty = 1 + 0.25 * std::max(0.0, valence - 7);
-  // The small second term orders flat regions by edge length; relative to the input's scale, it is nothing elsewhere.
-  const double edge = SquaredNorm(positions_[u] - positions_[v]);
-  return (q.Evaluate(positions_[u]) + 1e-6 * edge * length_scale_) * std::pow(worst_aspect, options_.aspect_power) * valence_penalty * coverage * coverage *
-         turning_penalty;
+  return LeastCost(v, u) * std::pow(worst_aspect, options_.aspect_power) * valence_penalty * coverage * coverage * turning_penalty;
 }
 
 Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
@@ -277,10 +282,16 @@ Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
   const std::vector<Vec2d> chart = FlattenFan(positions_[v], fan, positions_);
   Candidate best;
   if (!IsStarShaped(chart, fan.faces.size())) return best;
+  std::array<Candidate, kMaxRing> least;  // by LeastCost, the lowest first, until none can be the best any more
+  int count = 0;
   for (int j = 0; j < k; ++j) {
     if (fan.curve[0] >= 0 && j != fan.curve[0] && j != fan.curve[1]) continue;  // along the curve only
-    const double cost = Cost(v, fan, chart, old_normals, j);
-    if (cost < best.cost) best = {cost, j};
+    least[count++] = {LeastCost(v, fan.ring[j]), j};
+  }
+  std::sort(least.begin(), least.begin() + count, [](const Candidate& a, const Candidate& b) { return a.cost < b.cost || (a.cost == b.cost && a.kept < b.kept); });
+  for (int i = 0; i < count && least[i].cost <= best.cost; ++i) {
+    const double cost = Cost(v, fan, chart, old_normals, least[i].kept);
+    if (cost < best.cost || (cost == best.cost && least[i].kept < best.kept)) best = {cost, least[i].kept};
   }
   return best;
 }
