@@ -1,7 +1,6 @@
 #include "draco/normal_mesh_candidate.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "common/base_tags.h"
@@ -12,12 +11,8 @@
 #include "encoder/step_law.h"
 #include "encoder/stream_writer.h"
 #include "encoder/vertex_repair.h"
-#include "lacerta/surface_distance.h"
-#include "remesh/base_domain.h"
 #include "remesh/base_parts.h"
-#include "remesh/piercing.h"
 #include "remesh/reversal.h"
-#include "remesh/surface_fit.h"
 
 namespace lacerta {
 namespace {
@@ -26,43 +21,20 @@ namespace {
 constexpr double kLargestGrowth = 1.25;
 constexpr double kFreeVertices = 8;  // that any base may have more
 
-// A base mesh at a cut of the history, the normal mesh over it, and what of that is reversed.
+// The remesh of a base, and what of that is reversed.
 struct Remeshed {
-  CodedBase base;
+  std::unique_ptr<PiercedBase> base;
   NormalMesh mesh;
   ReversedPart reversed;
 };
 
 // held: grows where another remesh, without those collapses, is due; *is_due says so.
-StatusOr<Remeshed> RemeshAt(const RefinableSurface& input, uint32_t time, int num_levels, std::vector<uint32_t>* held, bool* is_due,
-                            BaseCoding coding) {
-  const TriangleMesh& mesh = input.surface.mesh();
-  BaseDomain domain(input.history, input.history.CutWithout(*held, time));
-  const uint32_t num_refined = domain.num_vertices();
-  const TriangleMesh nominal = Together({domain.PositionsOn(mesh), domain.triangles()}, input.still);
-  const auto nominal_step = static_cast<float>(kNominalStep * BoundingBoxDiagonal(nominal));
+Remeshed RemeshOver(std::unique_ptr<PiercedBase> base, const InputSurface& surface, int num_levels, std::vector<uint32_t>* held, bool* is_due) {
   Remeshed result;
-  LACERTA_ASSIGN_OR_RETURN(result.base, EncodeBaseMesh(RoundToLattice(nominal, nominal_step), coding));
-  const CodedBase& base = result.base;
-
-  // From here on in the order in which decoders get the base.
-  const auto is_still = [&](const Triangle& t) { return base.vertex_map[t[0]] >= num_refined; };
-  std::vector<Triangle> split;
-  std::copy_if(base.mesh.triangles.begin(), base.mesh.triangles.end(), std::back_inserter(split), [&](const Triangle& t) { return !is_still(t); });
-  domain.Reorder(base.vertex_map, split);
-  PiercingOptions options;
-  options.num_levels = num_levels;
-  std::vector<Vec3f> positions;
-  for (const uint32_t v : base.vertex_map) positions.push_back(nominal.positions[v]);
-  domain.Join(JoinedVertices(positions));
-  result.mesh = Pierce(input.surface, domain, positions, options);
-  result.mesh.mesh.base_triangles = base.mesh.triangles;
-  if (!input.still.triangles.empty()) {
-    for (const Triangle& t : base.mesh.triangles) result.mesh.mesh.tags.still.push_back(is_still(t));
-  }
-  FitToInput(input.surface, SurfaceFitOptions(), &result.mesh);
-  result.reversed = FindReversed(input.surface, result.mesh);
-  *is_due = HoldReversed(result.reversed, domain, held);
+  result.mesh = base->Remesh(num_levels);
+  result.reversed = FindReversed(surface, result.mesh);
+  *is_due = HoldReversed(result.reversed, base->domain(), held);
+  result.base = std::move(base);
   return result;
 }
 
@@ -75,19 +47,31 @@ NormalMeshCandidate::NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh)
       detail_scales_(DetailScales(target_)) {}
 
 StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels,
-                                                          BaseCoding coding) {
+                                                          BaseCoding coding, std::unique_ptr<PiercedBase> begun,
+                                                          std::unique_ptr<PiercedBase>* pierced) {
   const auto num_vertices = static_cast<uint32_t>(input.surface.mesh().positions.size());
   const uint32_t time = std::min(input.history.num_collapses(), num_vertices - std::min(num_vertices, num_base_vertices));
-  std::vector<uint32_t> held;
+  if (!begun) {
+    LACERTA_ASSIGN_OR_RETURN(begun, PiercedBase::Make(input, time, {}, coding));
+  }
+  std::vector<uint32_t> held = begun->held();
   bool is_due = false;
-  LACERTA_ASSIGN_OR_RETURN(Remeshed best, RemeshAt(input, time, num_levels, &held, &is_due, coding));
-  const double first_base = best.mesh.mesh.num_base_vertices, largest_base = std::max(kLargestGrowth * first_base, first_base + kFreeVertices);
+  Remeshed best = RemeshOver(std::move(begun), input.surface, num_levels, &held, &is_due);
+  const double first_base = num_vertices - time + static_cast<double>(input.still.positions.size());  // nothing held
+  const double largest_base = std::max(kLargestGrowth * first_base, first_base + kFreeVertices);
   for (int round = 1; is_due && round < kReversalRounds; ++round) {
-    LACERTA_ASSIGN_OR_RETURN(Remeshed other, RemeshAt(input, time, num_levels, &held, &is_due, coding));
-    if (other.mesh.mesh.num_base_vertices > largest_base) break;
+    LACERTA_ASSIGN_OR_RETURN(std::unique_ptr<PiercedBase> finer, PiercedBase::Make(input, time, held, coding));
+    if (finer->num_vertices() > largest_base) break;
+    Remeshed other = RemeshOver(std::move(finer), input.surface, num_levels, &held, &is_due);
     if (other.reversed.share < best.reversed.share) best = std::move(other);
   }
-  return NormalMeshCandidate(std::move(best.base), std::move(best.mesh));
+  CodedBase base = best.base->base();
+  if (pierced != nullptr) {
+    *pierced = std::move(best.base);
+  } else {
+    best.base.reset();  // as large as what comes now
+  }
+  return NormalMeshCandidate(std::move(base), std::move(best.mesh));
 }
 
 // The base on a lattice of that step, or of one so much finer that the points at which cuts are closed are no others' too.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "draco/base_mesh_codec.h"
+#include "draco/pierced_base.h"
 #include "draco/refinable_surface.h"
 #include "encoder/coefficient_descent.h"
 #include "encoder/step_law.h"
@@ -16,9 +17,6 @@
 #include "lacerta/codec.h"
 
 namespace lacerta {
-
-// Step of the base lattice while the order of the base is found, as a share of the diagonal.
-inline constexpr double kNominalStep = 5e-4;
 
 // A coded surface as bytes and as the mesh that a decoder makes of them.
 struct CodedStream {
@@ -48,9 +46,11 @@ class NormalMeshCandidate {
  public:
   // The base mesh is the one that the history has at `num_base_vertices` vertices, or its coarsest if that is larger, with the
   // still part beside it; up to a quarter or 8 vertices finer where the remesh would be reversed (remesh/reversal.h). num_levels: above
-  // the base. Fails where the base cannot be coded.
+  // the base. Fails where the base cannot be coded. pierced: where not null, becomes the base with what was pierced of it;
+  // begun: that of a candidate of the same input and size with fewer levels, or null.
   static StatusOr<NormalMeshCandidate> Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels,
-                                              BaseCoding coding = BaseCoding::kStock);
+                                              BaseCoding coding = BaseCoding::kStock, std::unique_ptr<PiercedBase> begun = nullptr,
+                                              std::unique_ptr<PiercedBase>* pierced = nullptr);
 
   // normal_mesh: over base.mesh, in its order.
   NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);

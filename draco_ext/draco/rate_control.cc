@@ -156,9 +156,11 @@ class Ladder {
   Status Remesh(int number, Rung* rung) const {
     const double goal = TypicalPsnr(target_, num_input_);
     constexpr double kComfort = 12;  // dB: a remesh nearer to the goal than that costs bytes and gets one level more
+    std::unique_ptr<PiercedBase> pierced;
     for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
-      LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate,
-                               NormalMeshCandidate::Create(surface_, RungSize(number), levels, target_.base_coding));
+      const bool may_grow = RungSize(number) * std::pow(4.0, levels + 1) < MostVertices(num_input_);
+      LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate, NormalMeshCandidate::Create(surface_, RungSize(number), levels, target_.base_coding,
+                                                                                          std::move(pierced), may_grow ? &pierced : nullptr));
       rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(candidate));
       constexpr uint64_t kRoughSamples = 30'000;
       const TriangleMesh remesh = rung->candidate->RemeshedSurface();

@@ -1,0 +1,57 @@
+#include "draco/pierced_base.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "common/base_tags.h"
+#include "encoder/quantizer.h"
+#include "lacerta/surface_distance.h"
+#include "remesh/base_parts.h"
+#include "remesh/piercing.h"
+#include "remesh/surface_fit.h"
+
+namespace lacerta {
+
+StatusOr<std::unique_ptr<PiercedBase>> PiercedBase::Make(const RefinableSurface& input, uint32_t time, std::vector<uint32_t> held, BaseCoding coding) {
+  BaseDomain domain(input.history, input.history.CutWithout(held, time));
+  const uint32_t num_refined = domain.num_vertices();
+  const TriangleMesh nominal = Together({domain.PositionsOn(input.surface.mesh()), domain.triangles()}, input.still);
+  const auto nominal_step = static_cast<float>(kNominalStep * BoundingBoxDiagonal(nominal));
+  LACERTA_ASSIGN_OR_RETURN(CodedBase base, EncodeBaseMesh(RoundToLattice(nominal, nominal_step), coding));
+
+  // From here on in the order in which decoders get the base.
+  const auto is_still = [&](const Triangle& t) { return base.vertex_map[t[0]] >= num_refined; };
+  std::vector<Triangle> split;
+  std::copy_if(base.mesh.triangles.begin(), base.mesh.triangles.end(), std::back_inserter(split), [&](const Triangle& t) { return !is_still(t); });
+  std::vector<uint8_t> still;
+  if (!input.still.triangles.empty()) {
+    for (const Triangle& t : base.mesh.triangles) still.push_back(is_still(t));
+  }
+  domain.Reorder(base.vertex_map, split);
+  std::vector<Vec3f> positions;
+  for (const uint32_t v : base.vertex_map) positions.push_back(nominal.positions[v]);
+  domain.Join(JoinedVertices(positions));
+  return std::unique_ptr<PiercedBase>(
+      new PiercedBase(input, std::move(base), std::move(domain), positions, std::move(still), std::move(held)));
+}
+
+PiercedBase::PiercedBase(const RefinableSurface& input, CodedBase base, BaseDomain domain, const std::vector<Vec3f>& positions,
+                         std::vector<uint8_t> is_still, std::vector<uint32_t> held)
+    : surface_(input.surface),
+      held_(std::move(held)),
+      base_(std::move(base)),
+      is_still_(std::move(is_still)),
+      domain_(std::move(domain)),
+      pierced_(surface_, domain_, positions, PiercingOptions()) {}
+
+NormalMesh PiercedBase::Remesh(int num_levels) {
+  while (pierced_.num_levels() < num_levels) pierced_.AddLevel();
+  NormalMesh result = pierced_.mesh();
+  result.mesh.base_triangles = base_.mesh.triangles;
+  result.mesh.tags.still = is_still_;
+  FitToInput(surface_, SurfaceFitOptions(), &result);
+  return result;
+}
+
+}  // namespace lacerta
