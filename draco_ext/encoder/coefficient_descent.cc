@@ -175,6 +175,19 @@ std::vector<SetBits> CountBits(const SurfaceTarget& target, CodedSurface coded) 
   return bits;
 }
 
+// What it does to the squared distance of the vertices of a level (1 .. L) that they are elsewhere, alone: about what it does to the surface.
+double RiseOfLevel(const SurfaceTarget& target, int level, const std::vector<Vec3f>& before, const std::vector<Vec3f>& after) {
+  const auto squared = [&](const Vec3f& position, size_t v) {
+    const double distance = Dot(position - target.points[v], target.normals[v]);
+    return distance * distance;
+  };
+  double rise = 0;
+  for (size_t v = target.topologies[level - 1].num_vertices; v < target.topologies[level].num_vertices; ++v) {
+    rise += target.masses[level][v] * (squared(after[v], v) - squared(before[v], v));
+  }
+  return rise;
+}
+
 // Leaves out whole sets, finest first, where that saves more rate than it costs distortion: zeros are cheap, not free.
 //   positions  Synthesize of `coded`, on entry and on return
 void DropIdleSets(const SurfaceTarget& target, double lambda, CodedSurface* coded, std::vector<Vec3f>* positions) {
@@ -187,7 +200,14 @@ void DropIdleSets(const SurfaceTarget& target, double lambda, CodedSurface* code
       std::vector<int32_t> kept(values.size(), 0);
       values.swap(kept);
       std::vector<Vec3f> without(positions->begin(), positions->begin() + target.topologies[i].num_vertices);
-      for (int level = static_cast<int>(i) + 1; level <= target.num_levels(); ++level) AppendLevel(target, *coded, level, &without);
+      int level = static_cast<int>(i) + 1;
+      AppendLevel(target, *coded, level, &without);
+      constexpr double kMuchMore = 4;  // than would pay: then that is known without the finer levels
+      if (RiseOfLevel(target, level, *positions, without) > kMuchMore * lambda * bits) {
+        values.swap(kept);
+        return;
+      }
+      while (++level <= target.num_levels()) AppendLevel(target, *coded, level, &without);
       const double raised = SurfaceDistortion(target, without);
       if (raised - distortion > lambda * bits) {
         values.swap(kept);
