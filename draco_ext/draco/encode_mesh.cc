@@ -15,7 +15,6 @@
 #include "draco/still_part.h"
 #include "draco/subdivided_input.h"
 #include "draco/zero_level_search.h"
-#include "geometry/triangle_tree.h"
 #include "lacerta/clean.h"
 #include "lacerta/codec.h"
 #include "lacerta/decoder.h"
@@ -222,7 +221,7 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   report.input_triangles = mesh.triangles.size();
   report.diagonal = meter.diagonal();
 
-  const double crowding = TriangleTree(mesh).Crowding();
+  const double crowding = meter.Crowding();
   StatusOr<EncodedParts> encoded = EncodeSurface(mesh, crowding, meter, target, options, report);
   if (!encoded.ok()) {  // without refinement, then, with the reason
     if (options.progress) options.progress(0.1, "simplifying");

@@ -166,6 +166,8 @@ StatusOr<SurfaceDistance> SurfaceDistanceMeter::Measure(const TriangleMesh& mesh
 
 double SurfaceDistanceMeter::diagonal() const { return original_->diagonal; }
 
+double SurfaceDistanceMeter::Crowding() const { return original_->tree.Crowding(); }
+
 StatusOr<SurfaceDistance> MeasureSurfaceDistance(const TriangleMesh& original, const TriangleMesh& mesh,
                                                  const SurfaceDistanceOptions& options) {
   LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(original));

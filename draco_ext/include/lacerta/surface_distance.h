@@ -80,6 +80,8 @@ class SurfaceDistanceMeter {
 
   // Of the original's bounding box, model units.
   double diagonal() const;
+  // Of the original: TriangleTree::Crowding (geometry/triangle_tree.h).
+  double Crowding() const;
 
  private:
   struct Surface;
