@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "draco_ext/remesh/remeshing.h"
@@ -43,6 +44,26 @@ TEST(NormalMeshCandidate, SplitsBaseFacesThatFoldOverWhatTheyStandFor) {
     EXPECT_LT(made.reversed, 5e-4);
     EXPECT_GT(made.num_base_vertices, asked) << "nothing was reversed";
     EXPECT_LE(made.num_base_vertices, asked + 8);
+  }
+}
+
+TEST(NormalMeshCandidate, WithMoreLevelsGoesOnFromTheOneWithFewer) {
+  for (const TriangleMesh& input : {shapes::BumpySphere(4, 0.1f), shapes::SpikySphere(4, 12, 1.0f)}) {
+    const CollapseHistory history = testing::Decimated(input, {8, 12, 0.2});
+    const InputSurface surface(input, testing::TopologyOf(input));
+    const TriangleMesh still;
+    const RefinableSurface refinable{surface, history, still};
+    std::unique_ptr<PiercedBase> pierced;
+    const NormalMeshCandidate fewer = NormalMeshCandidate::Create(refinable, 16, 2, BaseCoding::kStock, nullptr, &pierced).value();
+    ASSERT_NE(pierced, nullptr);
+    const bool is_held = !pierced->held().empty();
+    const NormalMeshCandidate more = NormalMeshCandidate::Create(refinable, 16, 3, BaseCoding::kStock, std::move(pierced)).value();
+    const NormalMeshCandidate anew = NormalMeshCandidate::Create(refinable, 16, 3).value();
+    EXPECT_EQ(more.num_levels(), 3);
+    EXPECT_GE(more.num_base_vertices(), fewer.num_base_vertices());
+    EXPECT_LE(more.num_base_vertices(), 16u + 8);
+    EXPECT_LT(FindReversed(surface, more.normal_mesh()).share, 1e-3);
+    EXPECT_TRUE(is_held || more.RemeshedSurface().positions == anew.RemeshedSurface().positions);
   }
 }
 

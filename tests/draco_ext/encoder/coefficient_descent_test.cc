@@ -117,6 +117,22 @@ TEST(Descend, DropsSetsThatDoNothing) {
   EXPECT_GT(fine.steps.back().normal_step, 0);
 }
 
+TEST(Descend, PositionsAreThoseThatDecodersGet) {
+  const SurfaceTarget target = Bumps();
+  for (const double lambda : {1e-12, 1e-9, 1e-7}) {
+    const std::vector<Vec3f> base(target.points.begin(), target.points.begin() + target.topologies[0].num_vertices);
+    const BaseMesh lattice = RoundToLattice({base, target.topologies[0].triangles}, static_cast<float>(BaseStepForSlope(lambda)));
+    std::vector<Vec3f> positions;
+    CodedSurface coded = QuantizeClosedLoop(target, lattice, StepsForSlope(target, DetailScales(target), lambda), &positions);
+    EXPECT_EQ(positions, Synthesize(target, coded));
+    const CodedSurface expected = Descend(target, coded, {lambda, 2, true});
+    coded = Descend(target, coded, {lambda, 2, true}, &positions);
+    EXPECT_EQ(positions, Synthesize(target, coded));
+    EXPECT_EQ(coded.base.lattice, expected.base.lattice);
+    for (size_t i = 0; i < coded.levels.size(); ++i) EXPECT_EQ(coded.levels[i].normal, expected.levels[i].normal);
+  }
+}
+
 TEST(Descend, MovesTheBaseUnlessToldNotTo) {
   const SurfaceTarget target = Bumps();
   CodedSurface before = ClosedLoopAt(target, 1e-8);
