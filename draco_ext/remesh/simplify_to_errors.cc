@@ -201,10 +201,13 @@ double WorstRatio(const SurfaceErrors& errors, const ErrorTargets& targets) {
 StatusOr<SurfaceErrorMeter> SurfaceErrorMeter::Create(const AttributedMesh& original, double texture_size) {
   LACERTA_ASSIGN_OR_RETURN(SurfaceDistanceMeter distance, SurfaceDistanceMeter::Create(original.surface));
   LACERTA_ASSIGN_OR_RETURN(AttributeDistanceMeter attributes, AttributeDistanceMeter::Create(original));
-  return SurfaceErrorMeter(std::move(distance), std::move(attributes), texture_size);
+  constexpr uint64_t kFewest = 10'000, kPerTriangle = 16;  // small parts have no more to tell
+  const uint64_t most_samples = std::max(kFewest, kPerTriangle * original.surface.triangles.size());
+  return SurfaceErrorMeter(std::move(distance), std::move(attributes), texture_size, most_samples);
 }
 
 StatusOr<SurfaceErrors> SurfaceErrorMeter::Measure(const AttributedMesh& mesh, uint64_t num_samples) const {
+  num_samples = std::min(num_samples, most_samples_);
   LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, distance_.Measure(mesh.surface, SurfaceDistanceOptions::RmsOnly(num_samples)));
   AttributeDistanceOptions options;
   options.num_samples = num_samples;

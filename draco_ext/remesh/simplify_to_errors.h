@@ -42,18 +42,20 @@ class SurfaceErrorMeter {
   // Copies the original. Fails as SurfaceDistanceMeter and AttributeDistanceMeter do.
   static StatusOr<SurfaceErrorMeter> Create(const AttributedMesh& original, double texture_size = 1024);
 
+  // num_samples: on each of the two surfaces, fewer where the original is small.
   StatusOr<SurfaceErrors> Measure(const AttributedMesh& mesh, uint64_t num_samples) const;
 
   double diagonal() const { return distance_.diagonal(); }
   double texture_size() const { return texture_size_; }
 
  private:
-  SurfaceErrorMeter(SurfaceDistanceMeter distance, AttributeDistanceMeter attributes, double texture_size)
-      : distance_(std::move(distance)), attributes_(std::move(attributes)), texture_size_(texture_size) {}
+  SurfaceErrorMeter(SurfaceDistanceMeter distance, AttributeDistanceMeter attributes, double texture_size, uint64_t most_samples)
+      : distance_(std::move(distance)), attributes_(std::move(attributes)), texture_size_(texture_size), most_samples_(most_samples) {}
 
   SurfaceDistanceMeter distance_;
   AttributeDistanceMeter attributes_;
   double texture_size_;
+  uint64_t most_samples_;
 };
 
 struct SimplifyToErrorsOptions {
