@@ -1,7 +1,9 @@
 #include "pack/attributed_family.h"
 
 #include <cstdlib>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -23,14 +25,24 @@ std::optional<AttributeKind> KindOf(const Attribute& attribute) {
 
 uint64_t SetOf(const std::string& name) { return std::strtoull(name.c_str() + std::strlen("TEXCOORD_"), nullptr, 10); }
 
+StatusOr<VertexSoup::Attribute> PosesOf(const Primitive& primitive, const Skin& skin) {
+  LACERTA_ASSIGN_OR_RETURN(const VertexInfluences influences, ReadInfluences(primitive, skin.num_joints));
+  VertexSoup::Attribute poses{kPosesName, AttributeKind::kGeneric, static_cast<uint32_t>(3 * skin.poses.size()), {}};
+  const TriangleMesh surface = Surface(primitive);
+  for (size_t v = 0; v < surface.positions.size(); ++v) {
+    skin.AppendPoses(Vec3Cast<double>(surface.positions[v]), influences.Of(v), &poses.values);
+  }
+  return poses;
+}
+
 StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const TexelScale& scale,
-                            OtherAttributes others) {
+                            OtherAttributes others, const Skin* skin) {
   VertexSoup soup;
   TriangleMesh surface = Surface(primitive);
   soup.positions = std::move(surface.positions);
   soup.triangles = std::move(surface.triangles);
   for (const Attribute& attribute : primitive.attributes) {
-    if (attribute.name == "POSITION") continue;
+    if (attribute.name == "POSITION" || (skin != nullptr && IsSkinAttribute(attribute.name))) continue;
     const std::optional<AttributeKind> kind = KindOf(attribute);
     if (!kind.has_value() && others == OtherAttributes::kLeaveOut) continue;
     if (!kind.has_value()) return Unsupported("has the attribute " + attribute.name + ", which is not simplified");
@@ -40,6 +52,10 @@ StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const Tex
       for (uint32_t c = 0; c < values.components; ++c) values.values.push_back(attribute.data.Float(v, c));
     }
     soup.attributes.push_back(std::move(values));
+  }
+  if (skin != nullptr) {
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute poses, PosesOf(primitive, *skin));
+    soup.attributes.push_back(std::move(poses));
   }
   return soup;
 }
@@ -56,19 +72,20 @@ std::string SoupName(const Attribute& attribute, size_t member, const TexelScale
 }
 
 StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
-                                          OtherAttributes others) {
+                                          OtherAttributes others, const Skin* skin) {
   std::vector<VertexSoup> soups;
   for (size_t m = 0; m < primitives.size(); ++m) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale, others));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale, others, skin));
     soups.push_back(std::move(soup));
   }
   return WeldSoups(soups);
 }
 
-bool HasOtherAttributes(const std::vector<const Primitive*>& primitives) {
+bool HasOtherAttributes(const std::vector<const Primitive*>& primitives, const Skin* skin) {
   for (const Primitive* primitive : primitives) {
     for (const Attribute& attribute : primitive->attributes) {
-      if (attribute.name != "POSITION" && !KindOf(attribute).has_value()) return true;
+      const bool is_other = attribute.name != "POSITION" && !KindOf(attribute).has_value();
+      if (is_other && (skin == nullptr || !IsSkinAttribute(attribute.name))) return true;
     }
   }
   return false;
@@ -84,6 +101,10 @@ ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const A
       result.attributes.push_back(targets.uv_texels * static_cast<double>(texel_side) / ScaleOf(attribute));
     } else if (attribute.kind == AttributeKind::kColor) {
       result.attributes.push_back(targets.color * 2.0);  // integers come back rounded
+    } else if (attribute.name == kPosesName) {
+      result.attributes.push_back(error);
+      result.everywhere.assign(original.attributes.size(), std::numeric_limits<double>::infinity());
+      result.everywhere[result.attributes.size() - 1] = error;
     } else {
       result.attributes.push_back(targets.normal_degrees);
     }

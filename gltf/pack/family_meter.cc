@@ -1,14 +1,17 @@
 #include "pack/family_meter.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "lacerta/surface_distance.h"
 
 namespace lacerta {
 
 FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error, const AttributeTargets& targets,
-                         uint64_t texel_side, TexelScale texels_per_unit)
+                         uint64_t texel_side, TexelScale texels_per_unit, const Skin* skin)
     : primitives_(std::move(primitives)), error_(error), attribute_targets_(targets),
-      texels_per_unit_(std::move(texels_per_unit)) {
-  StatusOr<AttributedMesh> original = ToAttributedMesh(primitives_, texels_per_unit_, OtherAttributes::kLeaveOut);
+      texels_per_unit_(std::move(texels_per_unit)), skin_(skin) {
+  StatusOr<AttributedMesh> original = ToAttributedMesh(primitives_, texels_per_unit_, OtherAttributes::kLeaveOut, skin_);
   status_ = original.status();
   if (!original.ok()) return;
   StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(original.value(), static_cast<double>(texel_side));
@@ -17,14 +20,34 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
   original_ = std::move(original).value();
   meter_ = std::move(meter).value();
   targets_ = FamilyTargets(original_, error, targets, texel_side);
-  leaves_out_ = HasOtherAttributes(primitives_);
+  leaves_out_ = HasOtherAttributes(primitives_, skin_);
 }
 
 StatusOr<SurfaceErrors> FamilyMeter::Measure(const std::vector<const Primitive*>& stored) const {
   constexpr uint64_t kSamples = 100'000;
   LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh,
-                           ToAttributedMesh(stored, texels_per_unit_, OtherAttributes::kLeaveOut));
+                           ToAttributedMesh(stored, texels_per_unit_, OtherAttributes::kLeaveOut, skin_));
   return meter_->Measure(mesh, kSamples);
+}
+
+ErrorTargets FamilyMeter::TargetsWith(const std::vector<double>& everywhere) const {
+  ErrorTargets targets = targets_;
+  if (targets.everywhere.empty()) targets.everywhere = everywhere;
+  for (size_t a = 0; a < everywhere.size(); ++a) targets.everywhere[a] = std::min(targets.everywhere[a], everywhere[a]);
+  return targets;
+}
+
+StatusOr<double> FamilyMeter::WorstPose(const std::vector<const Primitive*>& stored) const {
+  constexpr uint64_t kSamples = 100'000;
+  double worst = 0.0;
+  for (size_t pose = 0; pose < skin_->poses.size(); ++pose) {
+    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh original, PosedSurface(primitives_, *skin_, pose));
+    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh other, PosedSurface(stored, *skin_, pose));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, MeasureSurfaceDistance(original, other, SurfaceDistanceOptions::RmsOnly(kSamples)));
+    worst = std::max(worst, distance.Rms());
+    if (getenv("SK")) fprintf(stderr, "  pose %zu: %g of %g\n", pose, distance.Rms(), error_);
+  }
+  return worst;
 }
 
 std::optional<size_t> FamilyMeter::IndexOf(const std::string& soup_name) const {

@@ -10,6 +10,7 @@
 #include "pack/family.h"
 #include "pack/rounded.h"
 #include "pack/simplified.h"
+#include "pack/skin.h"
 #include "pack/texel_scale.h"
 #include "pack/vertex_match.h"
 
@@ -47,6 +48,7 @@ struct Context {
   std::vector<size_t> family_of;  // parallel to `sources`; kNone where there is no primitive
   Families families;
   uint64_t texel_side = 1024;
+  std::vector<ScenePose> poses;  // where there are skins
 };
 constexpr size_t kNone = ~size_t{0};
 
@@ -55,6 +57,7 @@ StatusOr<Context> MakeContext(const GltfDocument& document, const PackOptions& o
   context.document = &document;
   context.options = &options;
   context.texel_side = TexelSide(document);
+  if (ArraySize(document.json, "skins") > 0) context.poses = ScenePoses(document);
   LACERTA_ASSIGN_OR_RETURN(context.sources, ReadSources(document));
   std::vector<PlacedSurface> surfaces;
   std::vector<size_t> source_of;
@@ -150,6 +153,20 @@ std::vector<const Primitive*> PrimitivesOf(const Context& context, size_t family
     primitives.push_back(&*context.sources[member].primitive);
   }
   return primitives;
+}
+
+bool HasJoints(const Source& source) {
+  const std::vector<Attribute>& attributes = source.primitive->attributes;
+  return std::any_of(attributes.begin(), attributes.end(), [](const Attribute& a) { return IsSkinAttribute(a.name); });
+}
+
+// What moves a family; empty where nothing does.
+StatusOr<std::optional<Skin>> SkinOf(const Context& context, size_t family) {
+  std::vector<const Source*> sources;
+  for (const size_t member : context.families.families[family].members) sources.push_back(&context.sources[member]);
+  if (std::none_of(sources.begin(), sources.end(), [](const Source* source) { return HasJoints(*source); })) return std::optional<Skin>();
+  LACERTA_ASSIGN_OR_RETURN(Skin skin, FindSkin(*context.document, sources, context.poses));
+  return std::optional<Skin>(std::move(skin));
 }
 
 TexelScale ScaleOf(const Context& context, size_t family) {
@@ -254,8 +271,9 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
   for (const size_t member : members) least += (*plans)[member].report.bytes_before;
   if (is_stream) least = std::min(least, (*plans)[members[0]].progressive->stream.size() + kDracoJsonBytes + kProgressiveJsonBytes);
   std::vector<double> everywhere;
-  const FamilyMeter meter(PrimitivesOf(context, family), ErrorOf(context, family), context.options->attributes,
-                          context.texel_side, ScaleOf(context, family));
+  const StatusOr<std::optional<Skin>> skin = SkinOf(context, family);
+  const FamilyMeter meter(PrimitivesOf(context, family), ErrorOf(context, family), context.options->attributes, context.texel_side,
+                          ScaleOf(context, family), skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
   const uint64_t most_bytes = is_stream ? least : std::numeric_limits<uint64_t>::max();
   StatusOr<FamilyCandidate> chosen = WithAllVertices(context, family, meter, most_bytes, &everywhere);
   std::string against = chosen.ok() ? "" : chosen.status().message();
@@ -266,7 +284,8 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
   if (chosen.ok()) least = chosen.value().bytes;
   std::string simplified_reason;
   if (context.options->simplify && !is_stream) {  // streams have tried a simplified surface themselves
-    StatusOr<FamilyCandidate> simplified = Simplified(context, family, meter, everywhere);
+    StatusOr<FamilyCandidate> simplified = skin.status();
+    if (skin.ok()) simplified = Simplified(context, family, meter, everywhere);
     if (simplified.ok() && simplified.value().bytes < least) {
       chosen = std::move(simplified);
       least = chosen.value().bytes;

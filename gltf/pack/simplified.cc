@@ -1,10 +1,12 @@
 #include "pack/simplified.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "pack/attributed_family.h"
+#include "pack/skin_transfer.h"
 #include "remesh/simplify_to_errors.h"
 
 namespace lacerta {
@@ -27,8 +29,31 @@ AccessorData ToTypeOf(const AccessorData& original, AccessorData floats) {
   return data;
 }
 
+// JOINTS_0 in the type of the original's where it holds all joints.
+Status AddSkin(const VertexSoup& soup, const Primitive& original, const SkinTransfer::ByVertex& by_vertex, Primitive* primitive) {
+  const auto poses = std::find_if(soup.attributes.begin(), soup.attributes.end(),
+                                  [](const VertexSoup::Attribute& attribute) { return attribute.name == kPosesName; });
+  if (poses == soup.attributes.end()) return InternalError("the simplified surface has lost its poses");
+  AccessorData joints = original.Find("JOINTS_0")->data;
+  joints.count = soup.positions.size();
+  joints.bytes.clear();
+  std::vector<float> weights;
+  for (size_t v = 0; v < soup.positions.size(); ++v) {
+    const auto found = by_vertex.find(SkinTransfer::KeyOf(soup.positions[v], &poses->values[v * poses->components], poses->components / 3));
+    if (found == by_vertex.end()) return InternalError("a vertex of the simplified surface has lost its joints");
+    for (size_t c = 0; c < joints.components; ++c) {
+      const Influence influence = c < found->second.size() ? found->second[c] : Influence{};
+      weights.push_back(influence.weight);
+      for (size_t byte = 0; byte < ComponentSize(joints.type); ++byte) joints.bytes.push_back(static_cast<uint8_t>(influence.joint >> (8 * byte)));
+    }
+  }
+  primitive->attributes.push_back({"JOINTS_0", std::move(joints)});
+  primitive->attributes.push_back({"WEIGHTS_0", MakeFloatAccessor(weights, 4)});
+  return Status();
+}
+
 StatusOr<Primitive> ToPrimitive(const VertexSoup& soup, const Primitive& original, size_t member,
-                                const TexelScale& scale) {
+                                const FamilyMeter& meter, const SkinTransfer::ByVertex& by_vertex) {
   if (soup.triangles.empty()) return Unsupported("would have no triangle left");
   Primitive primitive;
   primitive.num_vertices = soup.positions.size();
@@ -38,7 +63,8 @@ StatusOr<Primitive> ToPrimitive(const VertexSoup& soup, const Primitive& origina
       primitive.attributes.push_back({attribute.name, MakeFloatAccessor(soup.positions)});
       continue;
     }
-    const std::string name = SoupName(attribute, member, scale);
+    if (meter.skin() != nullptr && IsSkinAttribute(attribute.name)) continue;
+    const std::string name = SoupName(attribute, member, meter.texels_per_unit());
     const auto found =
         std::find_if(soup.attributes.begin(), soup.attributes.end(), [&](const VertexSoup::Attribute& candidate) {
           return candidate.name == name && candidate.components == attribute.data.components;
@@ -47,15 +73,16 @@ StatusOr<Primitive> ToPrimitive(const VertexSoup& soup, const Primitive& origina
     primitive.attributes.push_back(
         {attribute.name, ToTypeOf(attribute.data, MakeFloatAccessor(found->values, found->components))});
   }
+  if (meter.skin() != nullptr) LACERTA_RETURN_IF_ERROR(AddSkin(soup, original, by_vertex, &primitive));
   return primitive;
 }
 
-StatusOr<std::vector<Primitive>> Split(const AttributedMesh& mesh, const FamilyMeter& meter) {
+StatusOr<std::vector<Primitive>> Split(const AttributedMesh& mesh, const FamilyMeter& meter, const SkinTransfer::ByVertex& by_vertex) {
   const std::vector<const Primitive*>& originals = meter.primitives();
   const std::vector<VertexSoup> soups = SplitIntoSoups(mesh, static_cast<uint32_t>(originals.size()));
   std::vector<Primitive> primitives;
   for (size_t m = 0; m < soups.size(); ++m) {
-    LACERTA_ASSIGN_OR_RETURN(Primitive primitive, ToPrimitive(soups[m], *originals[m], m, meter.texels_per_unit()));
+    LACERTA_ASSIGN_OR_RETURN(Primitive primitive, ToPrimitive(soups[m], *originals[m], m, meter, by_vertex));
     primitives.push_back(std::move(primitive));
   }
   return primitives;
@@ -70,17 +97,30 @@ StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vect
     // Names the attribute.
     return ToAttributedMesh(meter.primitives(), meter.texels_per_unit(), OtherAttributes::kRefuse).status();
   }
-  ErrorTargets targets = meter.targets();
-  targets.everywhere = everywhere;
+  ErrorTargets targets = meter.TargetsWith(everywhere);
   targets.distance *= kShare;
   targets.turned *= kShare;
   for (double& target : targets.attributes) target *= kShare;
   for (double& target : targets.everywhere) target *= kShare;
-  LACERTA_ASSIGN_OR_RETURN(const SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets));
+  SimplifyToErrorsOptions options;
+  std::optional<SkinTransfer> transfer;
+  if (meter.skin() != nullptr) {
+    LACERTA_ASSIGN_OR_RETURN(transfer, SkinTransfer::Create(meter));
+    options.finish = [&](AttributedMesh* mesh) { transfer->Transfer(mesh); };
+  }
+  LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets, options));
   if (!simplified.meets_targets) return Unsupported("no simplified surface is close enough");
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<Primitive> primitives, Split(simplified.mesh, meter));
+  SkinTransfer::ByVertex by_vertex;
+  if (transfer.has_value()) by_vertex = transfer->Transfer(&simplified.mesh);
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<Primitive> primitives, Split(simplified.mesh, meter, by_vertex));
   std::vector<const Primitive*> pointers;
   for (const Primitive& primitive : primitives) pointers.push_back(&primitive);
+  if (getenv("SK")) {
+    fprintf(stderr, "simplified to %zu of %zu\n", simplified.mesh.surface.triangles.size(), meter.original().surface.triangles.size());
+    for (size_t a = 0; a < simplified.errors.attributes.size(); ++a) fprintf(stderr, " %s %g of %g, rms %g\n", simplified.mesh.attributes[a].name.c_str(), simplified.errors.attributes[a].rms_99, targets.attributes[a], simplified.errors.attributes[a].rms);
+    fprintf(stderr, " distance %g of %g\n", simplified.errors.distance, targets.distance);
+    if (meter.skin()) (void)meter.WorstPose(pointers);
+  }
   return RoundFamily(pointers, meter, &simplified.errors, everywhere);
 }
 
