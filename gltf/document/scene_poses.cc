@@ -126,7 +126,7 @@ std::vector<ScenePose> ScenePoses(const GltfDocument& document) {
     const Animation& animation = animations[i * animations.size() / shown];
     const size_t times = std::clamp(kMostTimes / shown, size_t{1}, kTimesOfAnimation);
     for (size_t k = 0; k < times; ++k) {
-      const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(times);
+      const double share = times == 1 ? 0.5 : static_cast<double>(k) / static_cast<double>(times - 1);
       poses.push_back(nodes.At(animation, animation.begin + share * (animation.end - animation.begin)));
     }
   }

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "lacerta/surface_distance.h"
-
 namespace lacerta {
+namespace {
+
+constexpr uint64_t kSamples = 100'000;
+
+}  // namespace
 
 FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error, const AttributeTargets& targets,
                          uint64_t texel_side, TexelScale texels_per_unit, const Skin* skin)
@@ -17,6 +20,15 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
   StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(original.value(), static_cast<double>(texel_side));
   status_ = meter.status();
   if (!meter.ok()) return;
+  for (size_t pose = 0; skin_ != nullptr && pose < skin_->poses.size(); ++pose) {
+    StatusOr<TriangleMesh> surface = PosedSurface(primitives_, *skin_, pose);
+    status_ = surface.status();
+    if (!status_.ok()) return;
+    StatusOr<SurfaceDistanceMeter> posed = SurfaceDistanceMeter::Create(surface.value());
+    status_ = posed.status();
+    if (!status_.ok()) return;
+    poses_.push_back(std::move(posed).value());
+  }
   original_ = std::move(original).value();
   meter_ = std::move(meter).value();
   targets_ = FamilyTargets(original_, error, targets, texel_side);
@@ -24,10 +36,14 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
 }
 
 StatusOr<SurfaceErrors> FamilyMeter::Measure(const std::vector<const Primitive*>& stored) const {
-  constexpr uint64_t kSamples = 100'000;
   LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh,
                            ToAttributedMesh(stored, texels_per_unit_, OtherAttributes::kLeaveOut, skin_));
-  return meter_->Measure(mesh, kSamples);
+  LACERTA_ASSIGN_OR_RETURN(SurfaceErrors errors, meter_->Measure(mesh, kSamples));
+  if (skin_ == nullptr) return errors;
+  AttributeError& poses = errors.attributes[*IndexOf(kPosesName)];
+  LACERTA_ASSIGN_OR_RETURN(poses.rms, WorstPose(stored));
+  poses.rms_99 = poses.rms;
+  return errors;
 }
 
 ErrorTargets FamilyMeter::TargetsWith(const std::vector<double>& everywhere) const {
@@ -38,14 +54,12 @@ ErrorTargets FamilyMeter::TargetsWith(const std::vector<double>& everywhere) con
 }
 
 StatusOr<double> FamilyMeter::WorstPose(const std::vector<const Primitive*>& stored) const {
-  constexpr uint64_t kSamples = 100'000;
   double worst = 0.0;
-  for (size_t pose = 0; pose < skin_->poses.size(); ++pose) {
-    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh original, PosedSurface(primitives_, *skin_, pose));
-    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh other, PosedSurface(stored, *skin_, pose));
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, MeasureSurfaceDistance(original, other, SurfaceDistanceOptions::RmsOnly(kSamples)));
+  for (size_t pose = 0; pose < poses_.size(); ++pose) {
+    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh surface, PosedSurface(stored, *skin_, pose));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, poses_[pose].Measure(surface, SurfaceDistanceOptions::RmsOnly(kSamples)));
     worst = std::max(worst, distance.Rms());
-    if (getenv("SK")) fprintf(stderr, "  pose %zu: %g of %g\n", pose, distance.Rms(), error_);
+    if (getenv("SK")) fprintf(stderr, "  pose %zu %g\n", pose, distance.Rms());
   }
   return worst;
 }

@@ -11,6 +11,7 @@
 #include "lacerta/attributed_mesh.h"
 #include "lacerta/gltf.h"
 #include "lacerta/status.h"
+#include "lacerta/surface_distance.h"
 #include "pack/attributed_family.h"
 #include "remesh/simplify_to_errors.h"
 
@@ -40,7 +41,8 @@ class FamilyMeter {
   // The targets with bounds `everywhere` (as in ErrorTargets; may be empty) besides those that they have.
   ErrorTargets TargetsWith(const std::vector<double>& everywhere) const;
 
-  // Of primitives stored in the order of the originals. Fails where one has lost its area.
+  // Of primitives stored in the order of the originals. With a skin, the error of kPosesName is WorstPose. Fails where one has lost
+  // its area.
   StatusOr<SurfaceErrors> Measure(const std::vector<const Primitive*>& stored) const;
 
   // d_S of the surface in the pose in which it is farthest from the original's, mesh units. Only with a skin.
@@ -61,6 +63,7 @@ class FamilyMeter {
   Status status_;
   AttributedMesh original_;
   std::optional<SurfaceErrorMeter> meter_;
+  std::vector<SurfaceDistanceMeter> poses_;  // of the skin's
   ErrorTargets targets_;
   bool leaves_out_ = false;
 };

@@ -8,9 +8,10 @@
 #include "document/normals.h"
 #include "lacerta/surface_distance.h"
 #include "pack/family.h"
+#include "pack/find_skin.h"
+#include "pack/influence_slots.h"
 #include "pack/rounded.h"
 #include "pack/simplified.h"
-#include "pack/skin.h"
 #include "pack/texel_scale.h"
 #include "pack/vertex_match.h"
 
@@ -63,6 +64,7 @@ StatusOr<Context> MakeContext(const GltfDocument& document, const PackOptions& o
   std::vector<size_t> source_of;
   for (size_t i = 0; i < context.sources.size(); ++i) {
     if (!context.sources[i].primitive.has_value()) continue;
+    ArrangeInfluences(&*context.sources[i].primitive);
     surfaces.push_back({&context.sources[i].places, Surface(*context.sources[i].primitive)});
     source_of.push_back(i);
   }

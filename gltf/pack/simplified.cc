@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pack/attributed_family.h"
+#include "pack/influence_slots.h"
 #include "pack/skin_transfer.h"
 #include "remesh/simplify_to_errors.h"
 
@@ -49,6 +50,7 @@ Status AddSkin(const VertexSoup& soup, const Primitive& original, const SkinTran
   }
   primitive->attributes.push_back({"JOINTS_0", std::move(joints)});
   primitive->attributes.push_back({"WEIGHTS_0", MakeFloatAccessor(weights, 4)});
+  ArrangeInfluences(primitive);
   return Status();
 }
 
@@ -88,6 +90,48 @@ StatusOr<std::vector<Primitive>> Split(const AttributedMesh& mesh, const FamilyM
   return primitives;
 }
 
+std::vector<const Primitive*> Pointers(const std::vector<Primitive>& primitives) {
+  std::vector<const Primitive*> pointers;
+  for (const Primitive& primitive : primitives) pointers.push_back(&primitive);
+  return pointers;
+}
+
+// The search compares poses point by point, which tells more than how far the surfaces are apart: how much more is measured, and
+// the search run again with the bound that follows.
+StatusOr<std::vector<Primitive>> SimplifyInPoses(const FamilyMeter& meter, ErrorTargets targets, SurfaceErrors* errors) {
+  constexpr double kLeastGain = 1.05, kMostGain = 2.5, kMargin = 0.98;
+  constexpr int kMostTries = 3;
+  LACERTA_ASSIGN_OR_RETURN(const SkinTransfer transfer, SkinTransfer::Create(meter));
+  SimplifyToErrorsOptions options;
+  options.finish = [&](AttributedMesh* mesh) { transfer.Transfer(mesh); };
+  const size_t poses = *meter.IndexOf(kPosesName);
+  const double wanted = targets.attributes[poses];
+  std::vector<Primitive> best;
+  for (int i = 0; i < kMostTries; ++i) {
+    LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets, options));
+    if (!simplified.meets_targets) break;
+    const SkinTransfer::ByVertex by_vertex = transfer.Transfer(&simplified.mesh);
+    LACERTA_ASSIGN_OR_RETURN(std::vector<Primitive> primitives, Split(simplified.mesh, meter, by_vertex));
+    LACERTA_ASSIGN_OR_RETURN(const double worst, meter.WorstPose(Pointers(primitives)));
+    AttributeError& error = simplified.errors.attributes[poses];
+    const double gain = std::clamp(kMargin * wanted / worst, 1.0 / kMostGain, kMostGain);
+    if (getenv("SK")) fprintf(stderr, "simplified to %zu, %zu vertices; pairs %g of %g, worst %g of %g, distance %g of %g\n", simplified.mesh.surface.triangles.size(), primitives[0].num_vertices, error.rms, targets.attributes[poses], worst, wanted, simplified.errors.distance, targets.distance);
+    const bool is_limiting = error.rms > targets.attributes[poses] / kLeastGain;
+    error.rms = error.rms_99 = worst;
+    if (worst <= wanted) {
+      best = std::move(primitives);
+      *errors = std::move(simplified.errors);
+      if (gain < kLeastGain || !is_limiting) break;
+    } else if (!best.empty()) {
+      break;
+    }
+    targets.attributes[poses] *= gain;
+    targets.everywhere[poses] *= gain;
+  }
+  if (best.empty()) return Unsupported("no simplified surface is close enough in all poses of its skin");
+  return best;
+}
+
 }  // namespace
 
 StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vector<double>& everywhere) {
@@ -102,26 +146,17 @@ StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vect
   targets.turned *= kShare;
   for (double& target : targets.attributes) target *= kShare;
   for (double& target : targets.everywhere) target *= kShare;
-  SimplifyToErrorsOptions options;
-  std::optional<SkinTransfer> transfer;
-  if (meter.skin() != nullptr) {
-    LACERTA_ASSIGN_OR_RETURN(transfer, SkinTransfer::Create(meter));
-    options.finish = [&](AttributedMesh* mesh) { transfer->Transfer(mesh); };
+  std::vector<Primitive> primitives;
+  SurfaceErrors errors;
+  if (meter.skin() == nullptr) {
+    LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets));
+    if (!simplified.meets_targets) return Unsupported("no simplified surface is close enough");
+    LACERTA_ASSIGN_OR_RETURN(primitives, Split(simplified.mesh, meter, {}));
+    errors = std::move(simplified.errors);
+  } else {
+    LACERTA_ASSIGN_OR_RETURN(primitives, SimplifyInPoses(meter, targets, &errors));
   }
-  LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets, options));
-  if (!simplified.meets_targets) return Unsupported("no simplified surface is close enough");
-  SkinTransfer::ByVertex by_vertex;
-  if (transfer.has_value()) by_vertex = transfer->Transfer(&simplified.mesh);
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<Primitive> primitives, Split(simplified.mesh, meter, by_vertex));
-  std::vector<const Primitive*> pointers;
-  for (const Primitive& primitive : primitives) pointers.push_back(&primitive);
-  if (getenv("SK")) {
-    fprintf(stderr, "simplified to %zu of %zu\n", simplified.mesh.surface.triangles.size(), meter.original().surface.triangles.size());
-    for (size_t a = 0; a < simplified.errors.attributes.size(); ++a) fprintf(stderr, " %s %g of %g, rms %g\n", simplified.mesh.attributes[a].name.c_str(), simplified.errors.attributes[a].rms_99, targets.attributes[a], simplified.errors.attributes[a].rms);
-    fprintf(stderr, " distance %g of %g\n", simplified.errors.distance, targets.distance);
-    if (meter.skin()) (void)meter.WorstPose(pointers);
-  }
-  return RoundFamily(pointers, meter, &simplified.errors, everywhere);
+  return RoundFamily(Pointers(primitives), meter, &errors, everywhere);
 }
 
 }  // namespace lacerta

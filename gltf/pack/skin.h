@@ -3,15 +3,13 @@
 #define LACERTA_PACK_SKIN_H_
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
-#include "document/gltf_document.h"
 #include "document/primitive.h"
 #include "document/scene.h"
-#include "document/scene_poses.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
-#include "pack/source.h"
 
 namespace lacerta {
 
@@ -38,7 +36,8 @@ bool IsSkinAttribute(const std::string& name);
 // a weight is below 0 or not finite.
 StatusOr<VertexInfluences> ReadInfluences(const Primitive& primitive, size_t num_joints);
 
-// The joints of a skin in poses: matrices that take a vertex of the mesh to where it is then, scaled back to mesh units.
+// The joints of a skin in poses: matrices that take a vertex of the mesh to where it is then, scaled back to mesh units, and up to the
+// size of the mesh where the pose is smaller.
 struct Skin {
   size_t num_joints = 0;
   std::vector<std::vector<Transform>> poses;  // at least one, each of #joints
@@ -50,10 +49,6 @@ struct Skin {
 
 // The surface of primitives together in a pose. Fails like ReadInfluences.
 StatusOr<TriangleMesh> PosedSurface(const std::vector<const Primitive*>& primitives, const Skin& skin, size_t pose);
-
-// The skin of sources that belong together, with those of the scene's poses in which they differ most in shape. Fails with
-// kUnsupported, and the reason, where not all of them have one and the same, or it cannot be used.
-StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const Source*>& sources, const std::vector<ScenePose>& poses);
 
 }  // namespace lacerta
 

@@ -1,0 +1,16 @@
+// In which of its places a vertex names a joint: nothing to a viewer, but neighbors that agree compress better.
+#ifndef LACERTA_PACK_INFLUENCE_SLOTS_H_
+#define LACERTA_PACK_INFLUENCE_SLOTS_H_
+
+#include "document/primitive.h"
+
+namespace lacerta {
+
+// Gives every joint one of the four places in JOINTS_0 and WEIGHTS_0, so that joints that move the same vertices have other ones where
+// that can be, and puts it there wherever that is free. Joints with a weight of 0 become joint 0. Primitives with several sets, or sets
+// of unknown types, stay as they are.
+void ArrangeInfluences(Primitive* primitive);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_PACK_INFLUENCE_SLOTS_H_
