@@ -75,7 +75,8 @@ AccessorData RoundKeepingSums(const AccessorData& data, const Lattice& lattice) 
       sum += exact[c];
       missing -= k[c];
     }
-    missing += static_cast<int64_t>(std::floor(sum + 0.5));
+    constexpr double kMost = 1e15;  // beyond, there is nothing to be kept
+    missing = std::fabs(sum) < kMost ? missing + static_cast<int64_t>(std::floor(sum + 0.5)) : 0;
     // Not more than half a step is missing in each component.
     for (uint32_t tries = 0; tries < data.components && missing != 0; ++tries) {
       const int64_t move = missing > 0 ? 1 : -1;

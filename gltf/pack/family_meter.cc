@@ -7,6 +7,7 @@ namespace lacerta {
 namespace {
 
 constexpr uint64_t kSamples = 100'000;
+constexpr uint64_t kPoseSamples = 50'000;  // in each pose
 
 }  // namespace
 
@@ -57,9 +58,8 @@ StatusOr<double> FamilyMeter::WorstPose(const std::vector<const Primitive*>& sto
   double worst = 0.0;
   for (size_t pose = 0; pose < poses_.size(); ++pose) {
     LACERTA_ASSIGN_OR_RETURN(const TriangleMesh surface, PosedSurface(stored, *skin_, pose));
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, poses_[pose].Measure(surface, SurfaceDistanceOptions::RmsOnly(kSamples)));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, poses_[pose].Measure(surface, SurfaceDistanceOptions::RmsOnly(kPoseSamples)));
     worst = std::max(worst, distance.Rms());
-    if (getenv("SK")) fprintf(stderr, "  pose %zu %g\n", pose, distance.Rms());
   }
   return worst;
 }

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "document/draco_encode.h"
+
 namespace lacerta {
 namespace {
 
@@ -59,6 +61,18 @@ std::map<uint32_t, uint32_t> ChooseSlots(const Uses& uses) {
   return slot_of;
 }
 
+// Bytes of positions, joints and weights at a usual precision.
+size_t UsualSize(const Primitive& primitive) {
+  constexpr int kPositionBits = 11, kWeightBits = 8;
+  Primitive part{primitive.num_vertices, primitive.triangles, {}};
+  for (const char* name : {"POSITION", "JOINTS_0", "WEIGHTS_0"}) part.attributes.push_back(*primitive.Find(name));
+  DracoPrecision precision;
+  precision.positions = FitLattice(part.attributes[0].data, kPositionBits);
+  precision.lattices["WEIGHTS_0"] = {{}, 1.0f, kWeightBits};
+  const StatusOr<DracoEncoded> encoded = EncodeDracoPrimitive(part, precision);
+  return encoded.ok() ? encoded.value().bytes.size() : 0;
+}
+
 }  // namespace
 
 void ArrangeInfluences(Primitive* primitive) {
@@ -69,6 +83,7 @@ void ArrangeInfluences(Primitive* primitive) {
   if (!is_index || joints->components != kSlots || weights->components != kSlots) return;
   const std::map<uint32_t, uint32_t> slot_of = ChooseSlots(CountUses(*joints, *weights));
   const AccessorData old_joints = *joints, old_weights = *weights;
+  const size_t old_size = UsualSize(*primitive);
   const auto copy = [](const AccessorData& from, uint64_t v, uint32_t a, uint32_t b, AccessorData* to) {
     const size_t size = ComponentSize(from.type);
     std::copy_n(from.bytes.begin() + static_cast<std::ptrdiff_t>((v * kSlots + a) * size), size,
@@ -88,7 +103,7 @@ void ArrangeInfluences(Primitive* primitive) {
     }
     for (uint32_t a = 0; a < kSlots; ++a) {
       if (old_weights.Float(v, a) == 0.0f) continue;
-      if (to[a] == kSlots) {
+      if (to[a] == kSlots) {  // a joint that came before is there
         to[a] = static_cast<uint32_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
         taken[to[a]] = true;
       }
@@ -96,6 +111,9 @@ void ArrangeInfluences(Primitive* primitive) {
       copy(old_weights, v, a, to[a], weights);
     }
   }
+  if (UsualSize(*primitive) < old_size) return;
+  *joints = old_joints;
+  *weights = old_weights;
 }
 
 }  // namespace lacerta

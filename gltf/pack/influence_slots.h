@@ -7,8 +7,8 @@
 namespace lacerta {
 
 // Gives every joint one of the four places in JOINTS_0 and WEIGHTS_0, so that joints that move the same vertices have other ones where
-// that can be, and puts it there wherever that is free. Joints with a weight of 0 become joint 0. Primitives with several sets, or sets
-// of unknown types, stay as they are.
+// that can be, and puts it there wherever that is free. Joints with a weight of 0 become joint 0. Primitives stay as they are where
+// that takes no fewer bytes, where they have several sets, or sets of unknown types.
 void ArrangeInfluences(Primitive* primitive);
 
 }  // namespace lacerta

@@ -67,7 +67,8 @@ Lattice RoundedAttribute::LatticeAt(const Part& part, int level) const {
   const float step = range * std::exp2(-static_cast<float>(level) / kLevelsPerBit);
   if (is_shown) return LatticeOfStep(part.box, step);
   Lattice from_zero = part.box;
-  for (float& origin : from_zero.origin) from_zero.range += std::exchange(origin, 0.0f);
+  from_zero.range += std::max(0.0f, *std::max_element(from_zero.origin.begin(), from_zero.origin.end()));
+  from_zero.origin = {};
   return LatticeOfStep(from_zero, 1.0f / std::max(1.0f, std::round(1.0f / step)));  // 1 is a lattice point
 }
 

@@ -99,8 +99,8 @@ std::vector<const Primitive*> Pointers(const std::vector<Primitive>& primitives)
 // The search compares poses point by point, which tells more than how far the surfaces are apart: how much more is measured, and
 // the search run again with the bound that follows.
 StatusOr<std::vector<Primitive>> SimplifyInPoses(const FamilyMeter& meter, ErrorTargets targets, SurfaceErrors* errors) {
-  constexpr double kLeastGain = 1.05, kMostGain = 2.5, kMargin = 0.98;
-  constexpr int kMostTries = 3;
+  constexpr double kLeastGain = 1.05, kMostGain = 2.5, kMargin = 0.97;
+  constexpr int kMostTries = 2;
   LACERTA_ASSIGN_OR_RETURN(const SkinTransfer transfer, SkinTransfer::Create(meter));
   SimplifyToErrorsOptions options;
   options.finish = [&](AttributedMesh* mesh) { transfer.Transfer(mesh); };
@@ -115,7 +115,6 @@ StatusOr<std::vector<Primitive>> SimplifyInPoses(const FamilyMeter& meter, Error
     LACERTA_ASSIGN_OR_RETURN(const double worst, meter.WorstPose(Pointers(primitives)));
     AttributeError& error = simplified.errors.attributes[poses];
     const double gain = std::clamp(kMargin * wanted / worst, 1.0 / kMostGain, kMostGain);
-    if (getenv("SK")) fprintf(stderr, "simplified to %zu, %zu vertices; pairs %g of %g, worst %g of %g, distance %g of %g\n", simplified.mesh.surface.triangles.size(), primitives[0].num_vertices, error.rms, targets.attributes[poses], worst, wanted, simplified.errors.distance, targets.distance);
     const bool is_limiting = error.rms > targets.attributes[poses] / kLeastGain;
     error.rms = error.rms_99 = worst;
     if (worst <= wanted) {
