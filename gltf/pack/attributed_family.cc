@@ -7,10 +7,15 @@
 #include <optional>
 #include <utility>
 
+#include "pack/morphs.h"
+
 namespace lacerta {
 namespace {
 
 constexpr double kMostTurned = 5e-4;
+// Offsets are off beside the surface that they start from.
+constexpr double kShareOfTargets = 0.6;
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 
 bool BeginsWith(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
 
@@ -20,6 +25,7 @@ std::optional<AttributeKind> KindOf(const Attribute& attribute) {
   if (BeginsWith(name, "COLOR_")) return AttributeKind::kColor;
   if (name == "NORMAL" && attribute.data.components == 3) return AttributeKind::kNormal;
   if (name == "TANGENT" && attribute.data.components == 4) return AttributeKind::kTangent;
+  if (IsTargetAttribute(name)) return AttributeKind::kGeneric;
   return std::nullopt;
 }
 
@@ -96,15 +102,22 @@ ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const A
   ErrorTargets result;
   result.distance = error;
   result.turned = kMostTurned;
+  const auto bound_everywhere = [&](double bound) {
+    result.everywhere.resize(original.attributes.size(), std::numeric_limits<double>::infinity());
+    result.everywhere[result.attributes.size()] = bound;
+    result.attributes.push_back(bound);
+  };
   for (const MeshAttribute& attribute : original.attributes) {
     if (attribute.kind == AttributeKind::kTextureCoordinates) {
       result.attributes.push_back(targets.uv_texels * static_cast<double>(texel_side) / ScaleOf(attribute));
     } else if (attribute.kind == AttributeKind::kColor) {
       result.attributes.push_back(targets.color * 2.0);  // integers come back rounded
     } else if (attribute.name == kPosesName) {
-      result.attributes.push_back(error);
-      result.everywhere.assign(original.attributes.size(), std::numeric_limits<double>::infinity());
-      result.everywhere[result.attributes.size() - 1] = error;
+      bound_everywhere(error);
+    } else if (IsTargetPosition(attribute.name)) {
+      bound_everywhere(kShareOfTargets * error);
+    } else if (IsTargetAttribute(attribute.name)) {
+      result.attributes.push_back(targets.normal_degrees * kRadiansPerDegree);
     } else {
       result.attributes.push_back(targets.normal_degrees);
     }

@@ -90,15 +90,9 @@ StatusOr<std::vector<Primitive>> Split(const AttributedMesh& mesh, const FamilyM
   return primitives;
 }
 
-std::vector<const Primitive*> Pointers(const std::vector<Primitive>& primitives) {
-  std::vector<const Primitive*> pointers;
-  for (const Primitive& primitive : primitives) pointers.push_back(&primitive);
-  return pointers;
-}
-
 // The search compares poses point by point, which tells more than how far the surfaces are apart: how much more is measured, and
 // the search run again with the bound that follows.
-StatusOr<std::vector<Primitive>> SimplifyInPoses(const FamilyMeter& meter, ErrorTargets targets, SurfaceErrors* errors) {
+StatusOr<SimplifiedFamily> SimplifyInPoses(const FamilyMeter& meter, ErrorTargets targets) {
   constexpr double kLeastGain = 1.05, kMostGain = 2.5, kMargin = 0.97;
   constexpr int kMostTries = 2;
   LACERTA_ASSIGN_OR_RETURN(const SkinTransfer transfer, SkinTransfer::Create(meter));
@@ -106,34 +100,33 @@ StatusOr<std::vector<Primitive>> SimplifyInPoses(const FamilyMeter& meter, Error
   options.finish = [&](AttributedMesh* mesh) { transfer.Transfer(mesh); };
   const size_t poses = *meter.IndexOf(kPosesName);
   const double wanted = targets.attributes[poses];
-  std::vector<Primitive> best;
+  SimplifiedFamily best;
   for (int i = 0; i < kMostTries; ++i) {
     LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets, options));
     if (!simplified.meets_targets) break;
     const SkinTransfer::ByVertex by_vertex = transfer.Transfer(&simplified.mesh);
     LACERTA_ASSIGN_OR_RETURN(std::vector<Primitive> primitives, Split(simplified.mesh, meter, by_vertex));
-    LACERTA_ASSIGN_OR_RETURN(const double worst, meter.WorstPose(Pointers(primitives)));
+    LACERTA_ASSIGN_OR_RETURN(const double worst, meter.WorstPose(PointersTo(primitives)));
     AttributeError& error = simplified.errors.attributes[poses];
     const double gain = std::clamp(kMargin * wanted / worst, 1.0 / kMostGain, kMostGain);
     const bool is_limiting = error.rms > targets.attributes[poses] / kLeastGain;
     error.rms = error.rms_99 = worst;
     if (worst <= wanted) {
-      best = std::move(primitives);
-      *errors = std::move(simplified.errors);
+      best = {std::move(primitives), std::move(simplified.errors)};
       if (gain < kLeastGain || !is_limiting) break;
-    } else if (!best.empty()) {
+    } else if (!best.primitives.empty()) {
       break;
     }
     targets.attributes[poses] *= gain;
     targets.everywhere[poses] *= gain;
   }
-  if (best.empty()) return Unsupported("no simplified surface is close enough in all poses of its skin");
+  if (best.primitives.empty()) return Unsupported("no simplified surface is close enough in all poses of its skin");
   return best;
 }
 
 }  // namespace
 
-StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vector<double>& everywhere) {
+StatusOr<SimplifiedFamily> SimplifyPrimitives(const FamilyMeter& meter, const std::vector<double>& everywhere) {
   constexpr double kShare = 0.85;  // of every target to simplification: what rounding adds comes on top in squares
   LACERTA_RETURN_IF_ERROR(meter.status());
   if (meter.leaves_out()) {
@@ -145,17 +138,16 @@ StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vect
   targets.turned *= kShare;
   for (double& target : targets.attributes) target *= kShare;
   for (double& target : targets.everywhere) target *= kShare;
-  std::vector<Primitive> primitives;
-  SurfaceErrors errors;
-  if (meter.skin() == nullptr) {
-    LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets));
-    if (!simplified.meets_targets) return Unsupported("no simplified surface is close enough");
-    LACERTA_ASSIGN_OR_RETURN(primitives, Split(simplified.mesh, meter, {}));
-    errors = std::move(simplified.errors);
-  } else {
-    LACERTA_ASSIGN_OR_RETURN(primitives, SimplifyInPoses(meter, targets, &errors));
-  }
-  return RoundFamily(Pointers(primitives), meter, &errors, everywhere);
+  if (meter.skin() != nullptr) return SimplifyInPoses(meter, std::move(targets));
+  LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets));
+  if (!simplified.meets_targets) return Unsupported("no simplified surface is close enough");
+  LACERTA_ASSIGN_OR_RETURN(std::vector<Primitive> primitives, Split(simplified.mesh, meter, {}));
+  return SimplifiedFamily{std::move(primitives), std::move(simplified.errors)};
+}
+
+StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vector<double>& everywhere) {
+  LACERTA_ASSIGN_OR_RETURN(const SimplifiedFamily simplified, SimplifyPrimitives(meter, everywhere));
+  return RoundFamily(PointersTo(simplified.primitives), meter, &simplified.errors, everywhere);
 }
 
 }  // namespace lacerta
