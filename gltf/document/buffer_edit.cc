@@ -62,11 +62,10 @@ void AddBounds(const AccessorData& data, Json* accessor) {
 }
 
 std::vector<uint32_t> NonZeroElements(const AccessorData& data) {
-  const size_t size = data.components * ComponentSize(data.type);
   std::vector<uint32_t> elements;
   for (uint64_t i = 0; i < data.count; ++i) {
-    const auto begin = data.bytes.begin() + static_cast<std::ptrdiff_t>(i * size);
-    const bool zero = std::all_of(begin, begin + static_cast<std::ptrdiff_t>(size), [](uint8_t b) { return b == 0; });
+    bool zero = true;  // -0 is 0
+    for (uint32_t c = 0; c < data.components && zero; ++c) zero = data.Float(i, c) == 0.0f;
     if (!zero) elements.push_back(static_cast<uint32_t>(i));
   }
   return elements;
