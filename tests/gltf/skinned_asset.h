@@ -32,8 +32,9 @@ inline uint64_t AddInverseBinds(const std::vector<Vec3f>& origins, AssetBuilder*
   return accessor;
 }
 
-// The skinned cylinder. With `bend` (degrees): an animation of one second in which both upper joints turn by so much about x.
-inline Bytes SkinnedCylinderAsset(const shapes::SkinnedSoup& cylinder, double bend) {
+// The skinned cylinder. With `bend` (degrees): an animation of one second in which both upper joints turn by so much about x. With
+// `halved` in two primitives, left and right.
+inline Bytes SkinnedCylinderAsset(const shapes::SkinnedSoup& cylinder, double bend, bool halved = false) {
   AssetBuilder builder;
   Json primitive = AddSoup(cylinder.soup, &builder);
   AccessorData joints;
@@ -43,7 +44,21 @@ inline Bytes SkinnedCylinderAsset(const shapes::SkinnedSoup& cylinder, double be
   joints.bytes = cylinder.joints;
   primitive["attributes"]["JOINTS_0"] = AddData(joints, &builder);
   primitive["attributes"]["WEIGHTS_0"] = AddData(MakeFloatAccessor(cylinder.weights, 4), &builder);
-  builder.AddMesh("arm", Json::array({std::move(primitive)}));
+  Json primitives = Json::array({primitive});
+  if (halved) {
+    TriangleMesh halves[2];
+    for (const Triangle& t : cylinder.soup.triangles) {
+      float x = 0.0f;
+      for (const uint32_t v : t) x += cylinder.soup.positions[v].x;
+      halves[x > 0.0f].triangles.push_back(t);
+    }
+    primitives = Json::array({primitive, primitive});
+    for (size_t i = 0; i < 2; ++i) {
+      halves[i].positions = cylinder.soup.positions;
+      primitives[i]["indices"] = builder.AddIndices(halves[i]);
+    }
+  }
+  builder.AddMesh("arm", std::move(primitives));
   Json& json = builder.document().json;
   const float third = 2.0943951f;
   const uint64_t binds = AddInverseBinds({{0, 0, 0}, {0, 0, third}, {0, 0, 2 * third}}, &builder);
@@ -64,9 +79,9 @@ inline Bytes SkinnedCylinderAsset(const shapes::SkinnedSoup& cylinder, double be
   return builder.Glb();
 }
 
-// The first primitive of the mesh of the first node with a skin, unpacked, at a time of an animation: linear blend skinning as a viewer does
-// it, written anew. world units.
-inline TriangleMesh PosedAt(const Bytes& plain_glb, size_t animation, double time) {
+// A primitive of the mesh of the first node with a skin, unpacked, at a time of an animation: linear blend skinning as a viewer does
+// it, written anew. World units.
+inline TriangleMesh PosedAt(const Bytes& plain_glb, size_t animation, double time, uint64_t primitive_index = 0) {
   const GltfDocument document = ParseGltf(plain_glb, "").value();
   const Json& nodes = document.json["nodes"];
   std::vector<Transform> locals;
@@ -101,7 +116,7 @@ inline TriangleMesh PosedAt(const Bytes& plain_glb, size_t animation, double tim
     for (uint32_t i = 0; i < bind.size(); ++i) bind[i] = static_cast<double>(binds.Float(j, i / 3 * 4 + i % 3));
     joints.push_back(Multiply(world(skin["joints"][j].get<uint64_t>()), bind));
   }
-  const Primitive primitive = ReadPrimitive(document, PrimitiveAt(document, {shown->at("mesh").get<uint64_t>(), 0}), {}).value();
+  const Primitive primitive = ReadPrimitive(document, PrimitiveAt(document, {shown->at("mesh").get<uint64_t>(), primitive_index}), {}).value();
   const AccessorData &of = primitive.Find("JOINTS_0")->data, &by = primitive.Find("WEIGHTS_0")->data;
   TriangleMesh mesh = Surface(primitive);
   for (size_t v = 0; v < mesh.positions.size(); ++v) {
