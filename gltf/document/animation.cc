@@ -76,13 +76,16 @@ void AnimationTrack::Place(double time, NodePlacement* placement) const {
 }
 
 std::vector<Animation> ReadAnimations(const GltfDocument& document) {
+  constexpr uint64_t kMostKeyframes = uint64_t{1} << 24;  // of all tracks: many may refer to the same long accessor
+  uint64_t keyframes = 0;
   std::vector<Animation> animations;
   for (uint64_t a = 0; a < ArraySize(document.json, "animations"); ++a) {
     const Json& json = *FindElement(document.json, "animations", a);
     Animation animation;
-    for (uint64_t c = 0; c < ArraySize(json, "channels"); ++c) {
+    for (uint64_t c = 0; c < ArraySize(json, "channels") && keyframes < kMostKeyframes; ++c) {
       std::optional<AnimationTrack> track = ReadTrack(document, json, *FindElement(json, "channels", c));
       if (!track.has_value()) continue;
+      keyframes += track->times.size();
       const bool is_first = animation.tracks.empty();
       const auto begin = static_cast<double>(track->times.front()), end = static_cast<double>(track->times.back());
       animation.begin = is_first ? begin : std::min(animation.begin, begin);

@@ -30,7 +30,7 @@ struct Animation {
   double begin = 0.0, end = 0.0;  // seconds
 };
 
-// All animations that move nodes. Tracks that cannot be read are left out.
+// All animations that move nodes. Tracks that cannot be read are left out, and those beyond 16 million keyframes.
 std::vector<Animation> ReadAnimations(const GltfDocument& document);
 
 }  // namespace lacerta

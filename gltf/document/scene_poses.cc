@@ -121,10 +121,12 @@ std::vector<ScenePose> ScenePoses(const GltfDocument& document) {
   const Nodes nodes(document);
   std::vector<ScenePose> poses = {nodes.AtRest()};
   const std::vector<Animation> animations = ReadAnimations(document);
-  const size_t shown = std::min(animations.size(), kMostTimes);
+  constexpr size_t kMostTransforms = 1'000'000;  // of all nodes in all poses
+  const size_t most_times = std::clamp(kMostTransforms / std::max<size_t>(poses[0].size(), 1), size_t{1}, kMostTimes);
+  const size_t shown = std::min(animations.size(), most_times);
   for (size_t i = 0; i < shown; ++i) {
     const Animation& animation = animations[i * animations.size() / shown];
-    const size_t times = std::clamp(kMostTimes / shown, size_t{1}, kTimesOfAnimation);
+    const size_t times = std::clamp(most_times / shown, size_t{1}, kTimesOfAnimation);
     for (size_t k = 0; k < times; ++k) {
       const double share = times == 1 ? 0.5 : static_cast<double>(k) / static_cast<double>(times - 1);
       poses.push_back(nodes.At(animation, animation.begin + share * (animation.end - animation.begin)));

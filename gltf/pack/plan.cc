@@ -65,7 +65,6 @@ StatusOr<Context> MakeContext(const GltfDocument& document, const PackOptions& o
   std::vector<size_t> source_of;
   for (size_t i = 0; i < context.sources.size(); ++i) {
     if (!context.sources[i].primitive.has_value()) continue;
-    ArrangeInfluences(&*context.sources[i].primitive);
     surfaces.push_back({&context.sources[i].places, Surface(*context.sources[i].primitive)});
     source_of.push_back(i);
   }
@@ -73,7 +72,12 @@ StatusOr<Context> MakeContext(const GltfDocument& document, const PackOptions& o
   context.family_of.assign(context.sources.size(), kNone);
   for (size_t s = 0; s < surfaces.size(); ++s) context.family_of[source_of[s]] = context.families.of_surface[s];
   for (Family& family : context.families.families) {
-    for (size_t& member : family.members) member = source_of[member];
+    std::vector<Primitive*> primitives;
+    for (size_t& member : family.members) {
+      member = source_of[member];
+      primitives.push_back(&*context.sources[member].primitive);
+    }
+    ArrangeInfluences(std::move(primitives));
   }
   return context;
 }

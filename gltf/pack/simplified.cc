@@ -50,7 +50,6 @@ Status AddSkin(const VertexSoup& soup, const Primitive& original, const SkinTran
   }
   primitive->attributes.push_back({"JOINTS_0", std::move(joints)});
   primitive->attributes.push_back({"WEIGHTS_0", MakeFloatAccessor(weights, 4)});
-  ArrangeInfluences(primitive);
   return Status();
 }
 
@@ -87,6 +86,9 @@ StatusOr<std::vector<Primitive>> Split(const AttributedMesh& mesh, const FamilyM
     LACERTA_ASSIGN_OR_RETURN(Primitive primitive, ToPrimitive(soups[m], *originals[m], m, meter, by_vertex));
     primitives.push_back(std::move(primitive));
   }
+  std::vector<Primitive*> pointers;
+  for (Primitive& primitive : primitives) pointers.push_back(&primitive);
+  ArrangeInfluences(std::move(pointers));
   return primitives;
 }
 

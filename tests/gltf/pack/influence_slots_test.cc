@@ -41,7 +41,7 @@ size_t SizeOf(const Primitive& primitive) {
 TEST(InfluenceSlots, SaveBytesAndChangeNothing) {
   const Primitive before = SortedByWeight();
   Primitive after = before;
-  ArrangeInfluences(&after);
+  ArrangeInfluences({&after});
   EXPECT_LT(SizeOf(after), SizeOf(before));
   EXPECT_GT(SizeOf(after) * 4, SizeOf(before) * 3);
   const VertexInfluences old_ones = ReadInfluences(before, 3).value(), new_ones = ReadInfluences(after, 3).value();
@@ -52,12 +52,20 @@ TEST(InfluenceSlots, SaveBytesAndChangeNothing) {
   }
 }
 
+TEST(InfluenceSlots, EqualVerticesStayEqualInAllPrimitives) {
+  Primitive sorted = SortedByWeight(), upper = sorted;
+  upper.triangles.assign(sorted.triangles.begin() + static_cast<std::ptrdiff_t>(sorted.triangles.size() / 2), sorted.triangles.end());
+  ArrangeInfluences({&sorted, &upper});
+  EXPECT_EQ(sorted.attributes[1].data.bytes, upper.attributes[1].data.bytes);
+  EXPECT_EQ(sorted.attributes[2].data.bytes, upper.attributes[2].data.bytes);
+}
+
 TEST(InfluenceSlots, SeveralSetsStay) {
   Primitive primitive = SortedByWeight();
   primitive.attributes.push_back({"JOINTS_1", primitive.attributes[1].data});
   primitive.attributes.push_back({"WEIGHTS_1", primitive.attributes[2].data});
   const Bytes joints = primitive.attributes[1].data.bytes;
-  ArrangeInfluences(&primitive);
+  ArrangeInfluences({&primitive});
   EXPECT_EQ(primitive.attributes[1].data.bytes, joints);
 }
 
