@@ -53,13 +53,16 @@ std::optional<AnimationTrack> ReadTrack(const GltfDocument& document, const Json
 }  // namespace
 
 void AnimationTrack::Place(double time, NodePlacement* placement) const {
-  const auto later = std::upper_bound(times.begin(), times.end(), time, [](double t, float key) { return t < static_cast<double>(key); });
+  const auto later = std::upper_bound(times.begin(), times.end(), time,
+                                      [](double t, float key) { return t < static_cast<double>(key); });
   const auto after = std::min<size_t>(static_cast<size_t>(later - times.begin()), times.size() - 1);
   const size_t before = later == times.begin() ? 0 : static_cast<size_t>(later - times.begin()) - 1;
   const double length = static_cast<double>(times[after]) - static_cast<double>(times[before]);
-  const double share = is_stepped || !(length > 0.0) ? 0.0 : std::clamp((time - static_cast<double>(times[before])) / length, 0.0, 1.0);
+  const double share =
+      is_stepped || !(length > 0.0) ? 0.0 : std::clamp((time - static_cast<double>(times[before])) / length, 0.0, 1.0);
   const auto value = [&](uint32_t c, double sign) {
-    return (1.0 - share) * static_cast<double>(values.Float(before, c)) + share * sign * static_cast<double>(values.Float(after, c));
+    return (1.0 - share) * static_cast<double>(values.Float(before, c)) +
+           share * sign * static_cast<double>(values.Float(after, c));
   };
   if (part != Part::kRotation) {
     std::array<double, 3>& target = part == Part::kScale ? placement->scale : placement->translation;
@@ -67,7 +70,8 @@ void AnimationTrack::Place(double time, NodePlacement* placement) const {
     return;
   }
   double cosine = 0.0, squares = 0.0;
-  for (uint32_t c = 0; c < 4; ++c) cosine += static_cast<double>(values.Float(before, c)) * static_cast<double>(values.Float(after, c));
+  for (uint32_t c = 0; c < 4; ++c)
+    cosine += static_cast<double>(values.Float(before, c)) * static_cast<double>(values.Float(after, c));
   for (uint32_t c = 0; c < 4; ++c) {  // the shorter way around; q and -q are the same rotation
     placement->rotation[c] = value(c, cosine < 0.0 ? -1.0 : 1.0);
     squares += placement->rotation[c] * placement->rotation[c];

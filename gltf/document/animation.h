@@ -20,8 +20,8 @@ struct AnimationTrack {
   AccessorData values;       // one for each time
   bool is_stepped = false;
 
-  // Where it is at a time. Between keyframes straight from one to the other, for cubic splines, too: close to what a viewer
-  // shows, not the same.
+  // Where it is at a time. Between keyframes straight from one to the other, for cubic splines, too: close to what a
+  // viewer shows, not the same.
   void Place(double time, NodePlacement* placement) const;
 };
 

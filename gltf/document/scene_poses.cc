@@ -45,7 +45,8 @@ class Nodes {
       const Json& node = *FindElement(document.json, "nodes", order_[i]);
       for (uint64_t c = 0; c < ArraySize(node, "children"); ++c) {
         const uint64_t child = AsIndex(FindElement(node, "children", c)).value_or(count);
-        if (child >= count || parents_[static_cast<size_t>(child)] != order_[i] || taken[static_cast<size_t>(child)]) continue;
+        if (child >= count || parents_[static_cast<size_t>(child)] != order_[i] || taken[static_cast<size_t>(child)])
+          continue;
         taken[static_cast<size_t>(child)] = true;
         order_.push_back(static_cast<size_t>(child));
       }
@@ -100,7 +101,7 @@ class Nodes {
   std::vector<std::optional<NodePlacement>> placements_;  // empty: it has a matrix, which is not animated
   std::vector<Transform> locals_;
   std::vector<uint64_t> parents_;  // beyond the last: none
-  std::vector<size_t> order_;  // parents first
+  std::vector<size_t> order_;      // parents first
 };
 
 std::vector<bool> JointsOf(const GltfDocument& document) {

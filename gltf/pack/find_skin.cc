@@ -27,7 +27,8 @@ StatusOr<uint64_t> SkinIndex(const GltfDocument& document, const std::vector<con
     if (!mesh.has_value() || meshes.count(*mesh) == 0) continue;
     const std::optional<uint64_t> own = AsIndex(Find(node, "skin"));
     if (!own.has_value()) return Unsupported("has joints, but node " + std::to_string(n) + " shows it without a skin");
-    if (skin.has_value() && *skin != *own) return Unsupported("is moved by several skins, or touches what another one moves");
+    if (skin.has_value() && *skin != *own)
+      return Unsupported("is moved by several skins, or touches what another one moves");
     skin = own;
   }
   if (!skin.has_value()) return Unsupported("has joints, but no node shows it with a skin");
@@ -44,7 +45,8 @@ StatusOr<std::vector<Transform>> ReadInverseBinds(const GltfDocument& document, 
   const Json* reference = Find(skin, "inverseBindMatrices");
   if (reference == nullptr) return result;
   const StatusOr<AccessorData> data = ReadMatrices(document, AsIndex(reference).value_or(~uint64_t{0}));
-  if (!data.ok() || data.value().count < num_joints) return Unsupported("its skin's inverse bind matrices cannot be read");
+  if (!data.ok() || data.value().count < num_joints)
+    return Unsupported("its skin's inverse bind matrices cannot be read");
   constexpr uint32_t kRows = 4;
   for (size_t j = 0; j < num_joints; ++j) {
     for (uint32_t i = 0; i < result[j].size(); ++i) {
@@ -88,7 +90,8 @@ StatusOr<Sample> TakeSample(const std::vector<const Source*>& sources, size_t nu
 std::vector<double> ShapeOf(const std::vector<Vec3d>& points) {
   std::vector<double> distances;
   for (const size_t step : {size_t{1}, points.size() / 3, points.size() / 2}) {
-    for (size_t i = 0; i < points.size(); ++i) distances.push_back(Norm(points[i] - points[(i + step) % points.size()]));
+    for (size_t i = 0; i < points.size(); ++i)
+      distances.push_back(Norm(points[i] - points[(i + step) % points.size()]));
   }
   return distances;
 }
@@ -112,10 +115,12 @@ Status KeepMostDifferent(const Sample& sample, Skin* skin) {
   std::vector<double> nearest;  // of each pose to what is chosen
   for (size_t pose = 0; pose < skin->poses.size(); ++pose) {
     std::vector<Vec3d> posed;
-    for (size_t i = 0; i < sample.positions.size(); ++i) posed.push_back(skin->Posed(pose, sample.positions[i], sample.influences[i]));
+    for (size_t i = 0; i < sample.positions.size(); ++i)
+      posed.push_back(skin->Posed(pose, sample.positions[i], sample.influences[i]));
     shapes.push_back(ShapeOf(posed));
     const double stretch = Length(shapes.back()) / Length(as_it_is);
-    nearest.push_back(stretch < kMostStretch && stretch > 1.0 / kMostStretch ? Difference(shapes.back(), as_it_is) : -1.0);
+    nearest.push_back(stretch < kMostStretch && stretch > 1.0 / kMostStretch ? Difference(shapes.back(), as_it_is)
+                                                                             : -1.0);
   }
   std::vector<std::vector<Transform>> chosen;
   while (chosen.size() < kMostPoses) {
@@ -155,13 +160,15 @@ Status ScaleSmallPoses(const std::vector<const Source*>& sources, Skin* skin) {
 
 }  // namespace
 
-StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const Source*>& sources, const std::vector<ScenePose>& poses) {
+StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const Source*>& sources,
+                        const std::vector<ScenePose>& poses) {
   LACERTA_ASSIGN_OR_RETURN(const uint64_t index, SkinIndex(document, sources));
   const Json* json = FindElement(document.json, "skins", index);
   Skin skin;
   skin.num_joints = json == nullptr ? 0 : static_cast<size_t>(ArraySize(*json, "joints"));
   if (skin.num_joints == 0) return Unsupported("its skin has no joints");
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<Transform> inverse_binds, ReadInverseBinds(document, *json, skin.num_joints));
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<Transform> inverse_binds,
+                           ReadInverseBinds(document, *json, skin.num_joints));
   double scale = 0.0;  // of the first pose, which is the one at rest
   for (const ScenePose& pose : poses) {
     std::vector<Transform> joints;

@@ -12,9 +12,10 @@
 
 namespace lacerta {
 
-// The skin of sources that belong together, with those of the scene's poses in which they differ most in shape. Fails with
-// kUnsupported, and the reason, where not all of them have one and the same, or it cannot be used.
-StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const Source*>& sources, const std::vector<ScenePose>& poses);
+// The skin of sources that belong together, with those of the scene's poses in which they differ most in shape. Fails
+// with kUnsupported, and the reason, where not all of them have one and the same, or it cannot be used.
+StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const Source*>& sources,
+                        const std::vector<ScenePose>& poses);
 
 }  // namespace lacerta
 

@@ -44,7 +44,8 @@ void CountUses(const AccessorData& joints, const AccessorData& weights, Uses* us
 std::map<uint32_t, uint32_t> ChooseSlots(const Uses& uses) {
   std::vector<std::pair<uint64_t, uint32_t>> order;
   for (const auto& [joint, count] : uses.of_joint) order.emplace_back(count, joint);
-  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
+  std::sort(order.begin(), order.end(),
+            [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
   std::map<uint32_t, uint32_t> slot_of;
   for (const auto& [count, joint] : order) {
     std::array<uint64_t, kSlots> taken = {};
@@ -110,7 +111,8 @@ Primitive Arranged(const Primitive& primitive, const std::map<uint32_t, uint32_t
         put(place, wanted);
       }
     }
-    for (const auto& [joint, place] : rest) put(place, static_cast<uint32_t>(std::find(taken.begin(), taken.end(), false) - taken.begin()));
+    for (const auto& [joint, place] : rest)
+      put(place, static_cast<uint32_t>(std::find(taken.begin(), taken.end(), false) - taken.begin()));
   }
   return result;
 }
@@ -118,7 +120,9 @@ Primitive Arranged(const Primitive& primitive, const std::map<uint32_t, uint32_t
 }  // namespace
 
 void ArrangeInfluences(std::vector<Primitive*> primitives) {
-  const auto has_none = [](const Primitive* p) { return p->Find("JOINTS_0") == nullptr && p->Find("WEIGHTS_0") == nullptr; };
+  const auto has_none = [](const Primitive* p) {
+    return p->Find("JOINTS_0") == nullptr && p->Find("WEIGHTS_0") == nullptr;
+  };
   primitives.erase(std::remove_if(primitives.begin(), primitives.end(), has_none), primitives.end());
   if (!std::all_of(primitives.begin(), primitives.end(), [](const Primitive* p) { return IsArrangeable(*p); })) return;
   Uses uses;

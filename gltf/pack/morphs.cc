@@ -14,10 +14,13 @@ namespace {
 
 constexpr const char* kPrefix = "TARGET_";
 
-std::string NameOf(size_t target, const std::string& attribute) { return kPrefix + std::to_string(target) + "/" + attribute; }
+std::string NameOf(size_t target, const std::string& attribute) {
+  return kPrefix + std::to_string(target) + "/" + attribute;
+}
 
 const Attribute* PositionOf(const MorphTarget& target) {
-  const auto found = std::find_if(target.begin(), target.end(), [](const Attribute& a) { return a.name == "POSITION"; });
+  const auto found =
+      std::find_if(target.begin(), target.end(), [](const Attribute& a) { return a.name == "POSITION"; });
   return found == target.end() ? nullptr : &*found;
 }
 
@@ -70,31 +73,37 @@ std::vector<MorphTarget> TakeTargets(const std::vector<MorphTarget>& like, doubl
       AccessorData data = found->data;
       for (uint64_t v = 0; v < data.count && attribute.name == "POSITION"; ++v) {
         const double length = std::hypot(data.Float(v, 0), data.Float(v, 1), data.Float(v, 2));
-        if (length <= nothing) std::fill_n(data.bytes.begin() + static_cast<std::ptrdiff_t>(v * 3 * sizeof(float)), 3 * sizeof(float), uint8_t{0});
+        if (length <= nothing)
+          std::fill_n(data.bytes.begin() + static_cast<std::ptrdiff_t>(v * 3 * sizeof(float)), 3 * sizeof(float),
+                      uint8_t{0});
       }
       targets.back().push_back({attribute.name, std::move(data)});
     }
   }
   std::vector<Attribute>& attributes = primitive->attributes;
-  attributes.erase(std::remove_if(attributes.begin(), attributes.end(), [](const Attribute& a) { return IsTargetAttribute(a.name); }),
+  attributes.erase(std::remove_if(attributes.begin(), attributes.end(),
+                                  [](const Attribute& a) { return IsTargetAttribute(a.name); }),
                    attributes.end());
   return targets;
 }
 
-StatusOr<double> WorstMorph(const std::vector<MorphedPrimitive>& originals, const std::vector<MorphedPrimitive>& stored) {
+StatusOr<double> WorstMorph(const std::vector<MorphedPrimitive>& originals,
+                            const std::vector<MorphedPrimitive>& stored) {
   constexpr uint64_t kSamples = 30'000;
   size_t num_targets = 0;
   for (const MorphedPrimitive& one : originals) num_targets = std::max(num_targets, one.targets->size());
   double worst = 0.0;
   for (size_t t = 0; t < num_targets; ++t) {
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, MeasureSurfaceDistance(Morphed(originals, t), Morphed(stored, t),
-                                                                                    SurfaceDistanceOptions::RmsOnly(kSamples)));
+    LACERTA_ASSIGN_OR_RETURN(
+        const SurfaceDistance distance,
+        MeasureSurfaceDistance(Morphed(originals, t), Morphed(stored, t), SurfaceDistanceOptions::RmsOnly(kSamples)));
     worst = std::max(worst, distance.Rms());
   }
   return worst;
 }
 
-std::optional<std::vector<MorphTarget>> ReorderTargets(const MorphedPrimitive& morphed, const DracoPrecision& precision, const Primitive& decoded) {
+std::optional<std::vector<MorphTarget>> ReorderTargets(const MorphedPrimitive& morphed, const DracoPrecision& precision,
+                                                       const Primitive& decoded) {
   std::vector<AccessorData> tied;
   for (const MorphTarget& target : *morphed.targets) {
     for (const Attribute& attribute : target) tied.push_back(attribute.data);

@@ -32,7 +32,8 @@ SurfaceErrors ErrorsOf(const FamilyMeter& plain, const FamilyMeter& morphed, Sur
 
 }  // namespace
 
-StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter, const std::vector<const std::vector<MorphTarget>*>& targets,
+StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
+                                              const std::vector<const std::vector<MorphTarget>*>& targets,
                                               uint64_t texel_side, const std::vector<double>& everywhere) {
   constexpr double kNothing = 0.01;  // of the error: offsets below are none
   LACERTA_RETURN_IF_ERROR(meter.status());
@@ -43,8 +44,10 @@ StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter, const st
     with_targets.push_back(std::move(primitive));
     originals.push_back({meter.primitives()[m], targets[m]});
   }
-  const FamilyMeter morphed(PointersTo(with_targets), meter.error(), meter.attribute_targets(), texel_side, meter.texels_per_unit(), meter.skin());
-  LACERTA_ASSIGN_OR_RETURN(SimplifiedFamily simplified, SimplifyPrimitives(morphed, BoundsFor(meter, morphed, everywhere)));
+  const FamilyMeter morphed(PointersTo(with_targets), meter.error(), meter.attribute_targets(), texel_side,
+                            meter.texels_per_unit(), meter.skin());
+  LACERTA_ASSIGN_OR_RETURN(SimplifiedFamily simplified,
+                           SimplifyPrimitives(morphed, BoundsFor(meter, morphed, everywhere)));
   std::vector<std::vector<MorphTarget>> simplified_targets;
   for (size_t m = 0; m < targets.size(); ++m) {
     simplified_targets.push_back(TakeTargets(*targets[m], kNothing * meter.error(), &simplified.primitives[m]));
@@ -54,7 +57,8 @@ StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter, const st
     result.targets.clear();
     std::vector<MorphedPrimitive> stored;
     for (size_t m = 0; m < targets.size(); ++m) {
-      auto reordered = ReorderTargets({&simplified.primitives[m], &simplified_targets[m]}, rounded.precisions[m], rounded.members[m].decoded);
+      auto reordered = ReorderTargets({&simplified.primitives[m], &simplified_targets[m]}, rounded.precisions[m],
+                                      rounded.members[m].decoded);
       if (!reordered.has_value()) return false;
       result.targets.push_back(std::move(*reordered));
     }
@@ -63,7 +67,8 @@ StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter, const st
     return worst.ok() && worst.value() <= meter.error();
   };
   const SurfaceErrors errors = ErrorsOf(meter, morphed, std::move(simplified.errors));
-  LACERTA_ASSIGN_OR_RETURN(result.rounded, RoundFamily(PointersTo(simplified.primitives), meter, &errors, everywhere, takes_targets));
+  LACERTA_ASSIGN_OR_RETURN(result.rounded,
+                           RoundFamily(PointersTo(simplified.primitives), meter, &errors, everywhere, takes_targets));
   if (!takes_targets(result.rounded)) return InternalError("the morph targets do not follow what was measured");
   return result;
 }

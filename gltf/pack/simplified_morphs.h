@@ -17,9 +17,11 @@ struct MorphedFamily {
   std::vector<std::vector<MorphTarget>> targets;  // of each member, in the order of its decoded vertices
 };
 
-// SimplifyFamily of primitives with these targets (parallel to the meter's primitives), whose offsets are simplified with them and stay
-// floats. With each of the targets at weight 1 the surface is within the meter's error. Fails like SimplifyFamily and WithTargets.
-StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter, const std::vector<const std::vector<MorphTarget>*>& targets,
+// SimplifyFamily of primitives with these targets (parallel to the meter's primitives), whose offsets are simplified
+// with them and stay floats. With each of the targets at weight 1 the surface is within the meter's error. Fails like
+// SimplifyFamily and WithTargets.
+StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
+                                              const std::vector<const std::vector<MorphTarget>*>& targets,
                                               uint64_t texel_side, const std::vector<double>& everywhere);
 
 }  // namespace lacerta

@@ -6,7 +6,9 @@
 
 namespace lacerta {
 
-bool IsSkinAttribute(const std::string& name) { return name.rfind("JOINTS_", 0) == 0 || name.rfind("WEIGHTS_", 0) == 0; }
+bool IsSkinAttribute(const std::string& name) {
+  return name.rfind("JOINTS_", 0) == 0 || name.rfind("WEIGHTS_", 0) == 0;
+}
 
 StatusOr<VertexInfluences> ReadInfluences(const Primitive& primitive, size_t num_joints) {
   constexpr size_t kMostSets = 16;
@@ -14,7 +16,8 @@ StatusOr<VertexInfluences> ReadInfluences(const Primitive& primitive, size_t num
   for (size_t set = 0; set < kMostSets; ++set) {
     const Attribute* joints = primitive.Find("JOINTS_" + std::to_string(set));
     const Attribute* weights = primitive.Find("WEIGHTS_" + std::to_string(set));
-    if ((joints == nullptr) != (weights == nullptr)) return Unsupported("has joints without weights, or weights without joints");
+    if ((joints == nullptr) != (weights == nullptr))
+      return Unsupported("has joints without weights, or weights without joints");
     if (joints == nullptr) continue;
     const bool is_index = joints->data.type == ComponentType::kUint8 || joints->data.type == ComponentType::kUint16;
     if (!is_index || joints->data.components != 4 || weights->data.components != 4) {
@@ -33,8 +36,10 @@ StatusOr<VertexInfluences> ReadInfluences(const Primitive& primitive, size_t num
         const float weight = weights->Float(v, c);
         const uint32_t joint = joints->Uint(v, c);
         if (weight == 0.0f) continue;
-        if (!(weight > 0.0f) || !std::isfinite(weight)) return Unsupported("has a weight that is below 0 or not finite");
-        if (joint >= num_joints) return Unsupported("refers to joint " + std::to_string(joint) + ", which its skin has not got");
+        if (!(weight > 0.0f) || !std::isfinite(weight))
+          return Unsupported("has a weight that is below 0 or not finite");
+        if (joint >= num_joints)
+          return Unsupported("refers to joint " + std::to_string(joint) + ", which its skin has not got");
         own.push_back({joint, weight});
       }
     }
@@ -76,7 +81,8 @@ StatusOr<TriangleMesh> PosedSurface(const std::vector<const Primitive*>& primiti
     const TriangleMesh surface = Surface(*primitive);
     const auto first = static_cast<uint32_t>(result.positions.size());
     for (size_t v = 0; v < surface.positions.size(); ++v) {
-      result.positions.push_back(Vec3Cast<float>(skin.Posed(pose, Vec3Cast<double>(surface.positions[v]), influences.Of(v))));
+      result.positions.push_back(
+          Vec3Cast<float>(skin.Posed(pose, Vec3Cast<double>(surface.positions[v]), influences.Of(v))));
     }
     for (const Triangle& t : surface.triangles) result.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }

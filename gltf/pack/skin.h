@@ -32,12 +32,12 @@ struct VertexInfluences {
 // JOINTS_n or WEIGHTS_n.
 bool IsSkinAttribute(const std::string& name);
 
-// Equal joints added up. Fails with kUnsupported where sets are not in pairs or not of the types of glTF, a joint is not below num_joints, or
-// a weight is below 0 or not finite.
+// Equal joints added up. Fails with kUnsupported where sets are not in pairs or not of the types of glTF, a joint is
+// not below num_joints, or a weight is below 0 or not finite.
 StatusOr<VertexInfluences> ReadInfluences(const Primitive& primitive, size_t num_joints);
 
-// The joints of a skin in poses: matrices that take a vertex of the mesh to where it is then, scaled back to mesh units, and up to the
-// size of the mesh where the pose is smaller.
+// The joints of a skin in poses: matrices that take a vertex of the mesh to where it is then, scaled back to mesh
+// units, and up to the size of the mesh where the pose is smaller.
 struct Skin {
   size_t num_joints = 0;
   std::vector<std::vector<Transform>> poses;  // at least one, each of #joints

@@ -39,7 +39,8 @@ std::vector<Vec3d> VertexNormals(const TriangleMesh& mesh) {
 }  // namespace
 
 SkinTransfer::SkinTransfer(const FamilyMeter& meter)
-    : meter_(&meter), poses_(&meter.original().attributes[*meter.IndexOf(kPosesName)]),
+    : meter_(&meter),
+      poses_(&meter.original().attributes[*meter.IndexOf(kPosesName)]),
       surface_(std::make_unique<const GroupSurface>(meter.original())) {}
 
 StatusOr<SkinTransfer> SkinTransfer::Create(const FamilyMeter& meter) {
@@ -80,7 +81,8 @@ Influences SkinTransfer::Interpolate(const GroupSurface::Point& point) const {
   return all;
 }
 
-Influences SkinTransfer::At(uint32_t group, const Vec3f& position, const Vec3d& normal, const float* poses, uint32_t* hint) const {
+Influences SkinTransfer::At(uint32_t group, const Vec3f& position, const Vec3d& normal, const float* poses,
+                            uint32_t* hint) const {
   std::vector<GroupSurface::Point> sides;
   surface_->PointsNear(group, position, normal, kSeamDistance * meter_->meter().diagonal(), hint, &sides);
   surface_->KeepOnePerSide(*poses_, &sides);
@@ -90,7 +92,8 @@ Influences SkinTransfer::At(uint32_t group, const Vec3f& position, const Vec3d& 
   for (const GroupSurface::Point& side : sides) {
     InterpolateValue(*poses_, side, value.data());
     double square = 0.0;
-    for (size_t i = 0; i < value.size(); ++i) square += (value[i] - static_cast<double>(poses[i])) * (value[i] - static_cast<double>(poses[i]));
+    for (size_t i = 0; i < value.size(); ++i)
+      square += (value[i] - static_cast<double>(poses[i])) * (value[i] - static_cast<double>(poses[i]));
     if (!(square < least)) continue;
     least = square;
     nearest = Interpolate(side);
@@ -102,7 +105,8 @@ SkinTransfer::ByVertex SkinTransfer::Transfer(AttributedMesh* mesh) const {
   MeshAttribute& poses = mesh->attributes[static_cast<size_t>(poses_ - meter_->original().attributes.data())];
   const std::vector<Vec3d> normals = VertexNormals(mesh->surface);
   const size_t columns = poses.components;
-  std::map<std::pair<uint32_t, uint32_t>, uint32_t> row_of;  // of a vertex and its old row; the first group decides for all
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t>
+      row_of;  // of a vertex and its old row; the first group decides for all
   ByVertex result;
   std::vector<float> values;
   uint32_t hint = kNone;
@@ -110,12 +114,14 @@ SkinTransfer::ByVertex SkinTransfer::Transfer(AttributedMesh* mesh) const {
     for (size_t k = 0; k < 3; ++k) {
       const uint32_t vertex = mesh->surface.triangles[f][k];
       uint32_t& row = poses.corners[f][k];
-      const auto [known, is_new] = row_of.emplace(std::make_pair(vertex, row), static_cast<uint32_t>(values.size() / columns));
+      const auto [known, is_new] =
+          row_of.emplace(std::make_pair(vertex, row), static_cast<uint32_t>(values.size() / columns));
       if (is_new) {
         const Vec3f& position = mesh->surface.positions[vertex];
         Influences influences = At(mesh->GroupOf(f), position, normals[vertex], &poses.values[row * columns], &hint);
         meter_->skin()->AppendPoses(Vec3Cast<double>(position), influences, &values);
-        result.emplace(KeyOf(position, &values[values.size() - columns], meter_->skin()->poses.size()), std::move(influences));
+        result.emplace(KeyOf(position, &values[values.size() - columns], meter_->skin()->poses.size()),
+                       std::move(influences));
       }
       row = known->second;
     }

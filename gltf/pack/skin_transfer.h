@@ -23,9 +23,9 @@ class SkinTransfer {
   // Refers to the meter, which has a skin and is OK. Fails like ReadInfluences.
   static StatusOr<SkinTransfer> Create(const FamilyMeter& meter);
 
-  // Gives every vertex of the mesh, a simplification of FamilyMeter::original, the weights of the point of the original that is closest,
-  // interpolated over all joints, of which the four largest are kept with the sum 1; where skins meet at a vertex, on the side whose poses
-  // are nearest. Sets its poses to what follows from them.
+  // Gives every vertex of the mesh, a simplification of FamilyMeter::original, the weights of the point of the original
+  // that is closest, interpolated over all joints, of which the four largest are kept with the sum 1; where skins meet
+  // at a vertex, on the side whose poses are nearest. Sets its poses to what follows from them.
   ByVertex Transfer(AttributedMesh* mesh) const;
 
   // The key of a vertex; `poses`: of Skin::poses.
@@ -38,7 +38,7 @@ class SkinTransfer {
   Influences Interpolate(const GroupSurface::Point& point) const;
 
   const FamilyMeter* meter_;
-  const MeshAttribute* poses_;                // of the original
+  const MeshAttribute* poses_;  // of the original
   std::unique_ptr<const GroupSurface> surface_;
   std::vector<VertexInfluences> influences_;  // of the primitives
   std::vector<uint32_t> face_in_group_;       // of every face of the original

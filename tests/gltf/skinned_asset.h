@@ -24,7 +24,8 @@ inline uint64_t AddData(const AccessorData& data, AssetBuilder* builder) {
 // Inverse bind matrices of joints that stand at `origins`, unturned.
 inline uint64_t AddInverseBinds(const std::vector<Vec3f>& origins, AssetBuilder* builder) {
   std::vector<float> columns;
-  for (const Vec3f& o : origins) columns.insert(columns.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -o.x, -o.y, -o.z, 1});
+  for (const Vec3f& o : origins)
+    columns.insert(columns.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -o.x, -o.y, -o.z, 1});
   const uint64_t accessor = AddData(MakeFloatAccessor(columns, 4), builder);
   Json& json = builder->document().json["accessors"][static_cast<size_t>(accessor)];
   json["type"] = "MAT4";
@@ -32,8 +33,8 @@ inline uint64_t AddInverseBinds(const std::vector<Vec3f>& origins, AssetBuilder*
   return accessor;
 }
 
-// The skinned cylinder. With `bend` (degrees): an animation of one second in which both upper joints turn by so much about x. With
-// `halved` in two primitives, left and right.
+// The skinned cylinder. With `bend` (degrees): an animation of one second in which both upper joints turn by so much
+// about x. With `halved` in two primitives, left and right.
 inline Bytes SkinnedCylinderAsset(const shapes::SkinnedSoup& cylinder, double bend, bool halved = false) {
   AssetBuilder builder;
   Json primitive = AddSoup(cylinder.soup, &builder);
@@ -72,15 +73,18 @@ inline Bytes SkinnedCylinderAsset(const shapes::SkinnedSoup& cylinder, double be
   const double half = bend * 3.14159265358979 / 360;
   const uint64_t times = AddData(MakeFloatAccessor(std::vector<float>{0, 1}, 1), &builder);
   const uint64_t turns = AddData(
-      MakeFloatAccessor({0, 0, 0, 1, static_cast<float>(std::sin(half)), 0, 0, static_cast<float>(std::cos(half))}, 4), &builder);
+      MakeFloatAccessor({0, 0, 0, 1, static_cast<float>(std::sin(half)), 0, 0, static_cast<float>(std::cos(half))}, 4),
+      &builder);
   Json channels = Json::array();
-  for (const uint64_t node : {2, 3}) channels.push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "rotation"}}}});
-  json["animations"] = Json::array({{{"samplers", {{{"input", times}, {"output", turns}}}}, {"channels", std::move(channels)}}});
+  for (const uint64_t node : {2, 3})
+    channels.push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "rotation"}}}});
+  json["animations"] =
+      Json::array({{{"samplers", {{{"input", times}, {"output", turns}}}}, {"channels", std::move(channels)}}});
   return builder.Glb();
 }
 
-// A primitive of the mesh of the first node with a skin, unpacked, at a time of an animation: linear blend skinning as a viewer does
-// it, written anew. World units.
+// A primitive of the mesh of the first node with a skin, unpacked, at a time of an animation: linear blend skinning as
+// a viewer does it, written anew. World units.
 inline TriangleMesh PosedAt(const Bytes& plain_glb, size_t animation, double time, uint64_t primitive_index = 0) {
   const GltfDocument document = ParseGltf(plain_glb, "").value();
   const Json& nodes = document.json["nodes"];
@@ -90,7 +94,8 @@ inline TriangleMesh PosedAt(const Bytes& plain_glb, size_t animation, double tim
   const std::vector<Animation> animations = ReadAnimations(document);
   if (animation < animations.size()) {
     for (const AnimationTrack& track : animations[animation].tracks) track.Place(time, &placements[track.node]);
-    for (const AnimationTrack& track : animations[animation].tracks) locals[track.node] = ToTransform(placements[track.node]);
+    for (const AnimationTrack& track : animations[animation].tracks)
+      locals[track.node] = ToTransform(placements[track.node]);
   }
   const auto world = [&](uint64_t node) {
     Transform result = locals[node];
@@ -116,12 +121,14 @@ inline TriangleMesh PosedAt(const Bytes& plain_glb, size_t animation, double tim
     for (uint32_t i = 0; i < bind.size(); ++i) bind[i] = static_cast<double>(binds.Float(j, i / 3 * 4 + i % 3));
     joints.push_back(Multiply(world(skin["joints"][j].get<uint64_t>()), bind));
   }
-  const Primitive primitive = ReadPrimitive(document, PrimitiveAt(document, {shown->at("mesh").get<uint64_t>(), primitive_index}), {}).value();
+  const Primitive primitive =
+      ReadPrimitive(document, PrimitiveAt(document, {shown->at("mesh").get<uint64_t>(), primitive_index}), {}).value();
   const AccessorData &of = primitive.Find("JOINTS_0")->data, &by = primitive.Find("WEIGHTS_0")->data;
   TriangleMesh mesh = Surface(primitive);
   for (size_t v = 0; v < mesh.positions.size(); ++v) {
     Vec3d sum;
-    for (uint32_t c = 0; c < 4; ++c) sum += Apply(joints[of.Uint(v, c)], Vec3Cast<double>(mesh.positions[v])) * static_cast<double>(by.Float(v, c));
+    for (uint32_t c = 0; c < 4; ++c)
+      sum += Apply(joints[of.Uint(v, c)], Vec3Cast<double>(mesh.positions[v])) * static_cast<double>(by.Float(v, c));
     mesh.positions[v] = Vec3Cast<float>(sum);
   }
   return mesh;

@@ -43,7 +43,8 @@ TEST(Animation, TakesTheShorterWayAndStaysAtTheEnds) {
   track.part = AnimationTrack::Part::kRotation;
   track.times = {1.0f, 3.0f};
   const float h = std::sqrt(0.5f);
-  track.values = MakeFloatAccessor({0, 0, 0, 1, -h, 0, 0, -h}, 4);  // the second: 90 degrees about x, the other way written
+  track.values =
+      MakeFloatAccessor({0, 0, 0, 1, -h, 0, 0, -h}, 4);  // the second: 90 degrees about x, the other way written
   NodePlacement placement;
   track.Place(2.0, &placement);
   EXPECT_NEAR(placement.rotation[0], std::sin(0.3926991), 1e-6);

@@ -27,7 +27,9 @@ Primitive SortedByWeight() {
     std::sort(own.begin(), own.end());
     for (const auto& [weight, joint] : own) joints.bytes.push_back(joint), weights.push_back(-weight);
   }
-  primitive.attributes = {{"POSITION", MakeFloatAccessor(cylinder.soup.positions)}, {"JOINTS_0", joints}, {"WEIGHTS_0", MakeFloatAccessor(weights, 4)}};
+  primitive.attributes = {{"POSITION", MakeFloatAccessor(cylinder.soup.positions)},
+                          {"JOINTS_0", joints},
+                          {"WEIGHTS_0", MakeFloatAccessor(weights, 4)}};
   return primitive;
 }
 
@@ -54,7 +56,8 @@ TEST(InfluenceSlots, SaveBytesAndChangeNothing) {
 
 TEST(InfluenceSlots, EqualVerticesStayEqualInAllPrimitives) {
   Primitive sorted = SortedByWeight(), upper = sorted;
-  upper.triangles.assign(sorted.triangles.begin() + static_cast<std::ptrdiff_t>(sorted.triangles.size() / 2), sorted.triangles.end());
+  upper.triangles.assign(sorted.triangles.begin() + static_cast<std::ptrdiff_t>(sorted.triangles.size() / 2),
+                         sorted.triangles.end());
   ArrangeInfluences({&sorted, &upper});
   EXPECT_EQ(sorted.attributes[1].data.bytes, upper.attributes[1].data.bytes);
   EXPECT_EQ(sorted.attributes[2].data.bytes, upper.attributes[2].data.bytes);

@@ -32,7 +32,8 @@ Bytes BallWithHills() {
     targets.push_back({{"POSITION", builder.AddFloats(offsets, true)}});
   }
   primitive["targets"] = std::move(targets);
-  builder.document().json["materials"] = Json::array({{{"name", "red"}}});  // without numbers that might be an accessor's
+  builder.document().json["materials"] =
+      Json::array({{{"name", "red"}}});  // without numbers that might be an accessor's
   builder.AddMesh("ball", Json::array({std::move(primitive)}));
   return builder.Glb();
 }
@@ -53,7 +54,8 @@ TriangleMesh MorphedSurface(const Bytes& plain, size_t primitive_index, uint64_t
 double WorstError(const Bytes& original, const Bytes& unpacked, size_t primitive, uint64_t num_targets) {
   double worst = 0.0;
   for (uint64_t t = 0; t < num_targets; ++t) {
-    const auto distance = MeasureSurfaceDistance(MorphedSurface(original, primitive, t), MorphedSurface(unpacked, primitive, t));
+    const auto distance =
+        MeasureSurfaceDistance(MorphedSurface(original, primitive, t), MorphedSurface(unpacked, primitive, t));
     worst = std::max(worst, distance.value().Rms());
   }
   return worst;
@@ -111,7 +113,8 @@ TEST(Morphs, MorphStressTestHoldsItsError) {
   const PackResult packed = PackGltf(asset, {}).value();
   EXPECT_LT(packed.glb.size(), 300'000u);
   EXPECT_GT(packed.glb.size(), 150'000u);
-  const double error = WorstError(asset, UnpackGltf(packed.glb, {}).value().glb, 1, 8), target = packed.report.primitives[1].target_error;
+  const double error = WorstError(asset, UnpackGltf(packed.glb, {}).value().glb, 1, 8),
+               target = packed.report.primitives[1].target_error;
   EXPECT_LT(error, 1.02 * target);
   EXPECT_GT(error, 0.3 * target);
 }

@@ -53,7 +53,8 @@ TEST(Skin, BentCylinderIsSimplifiedAndHoldsItsErrorInPoses) {
   const Bytes asset = BentCylinder();
   const PackResult all = Pack(asset, false);
   const PackResult& simplified = PackedBentCylinder();
-  const uint64_t bytes_of_all = all.report.primitives[0].bytes_after, bytes = simplified.report.primitives[0].bytes_after;
+  const uint64_t bytes_of_all = all.report.primitives[0].bytes_after,
+                 bytes = simplified.report.primitives[0].bytes_after;
   EXPECT_GT(10 * bytes_of_all, 15 * bytes) << bytes_of_all << " / " << bytes;
   EXPECT_LT(bytes_of_all, 3 * bytes) << bytes_of_all << " / " << bytes;
   EXPECT_GT(WorstPsnr(asset, Unpacked(all)), 69.9);
@@ -107,7 +108,8 @@ TEST(Skin, WeightsAddUpToOne) {
 TEST(Skin, PrimitivesStayJoinedInPoses) {
   const Bytes asset = SkinnedCylinderAsset(shapes::SkinnedCylinder(48, 60), 60.0, true);
   const PackResult packed = Pack(asset);
-  EXPECT_NE(packed.report.primitives[0].reason.find("simplified from 2880"), std::string::npos) << packed.report.primitives[0].reason;
+  EXPECT_NE(packed.report.primitives[0].reason.find("simplified from 2880"), std::string::npos)
+      << packed.report.primitives[0].reason;
   const Bytes unpacked = Unpacked(packed);
   const auto points = [&](const Bytes& plain, uint64_t primitive, double time) {
     std::set<std::tuple<float, float, float>> result;
@@ -129,7 +131,9 @@ TEST(Skin, WhatCannotBePosedIsNotSimplified) {
   const Bytes asset = SkinnedCylinderAsset(shapes::SkinnedCylinder(24, 52), 60.0);
   GltfDocument document = ParseGltf(asset, "").value();
   document.json["nodes"][0].erase("skin");
-  const auto pack = [](const GltfDocument& changed) { return PackGltf(FormatGlb(changed), {}).value().report.primitives[0]; };
+  const auto pack = [](const GltfDocument& changed) {
+    return PackGltf(FormatGlb(changed), {}).value().report.primitives[0];
+  };
   EXPECT_NE(pack(document).reason.find("node 0 shows it without a skin"), std::string::npos);
   document = ParseGltf(asset, "").value();
   document.json["skins"].push_back(document.json["skins"][0]);
