@@ -65,9 +65,9 @@ class Search {
     fit.num_samples = num_fit_samples_;
     fit.diagonal = meter_.diagonal();
     FitAttributes(surface_, fit, &mesh);
+    if (options_.finish) options_.finish(&mesh);
     return mesh;
   }
-
 
   // The smallest surface of the sequence that meets the targets by the samples of the search; nothing where none does. guess: its size.
   StatusOr<std::optional<Trial>> Smallest(const AttributedSimplification& sequence, double guess) const {

@@ -3,6 +3,7 @@
 #define LACERTA_REMESH_SIMPLIFY_TO_ERRORS_H_
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -62,6 +63,8 @@ struct SimplifyToErrorsOptions {
   uint64_t num_samples = 100'000;        // of the measure that the result is held to
   uint64_t num_search_samples = 10'000;  // while the size is looked for
   int num_weightings = 2;                // how often the weights of attributes are set anew by what limited the size
+  // Makes of a fitted surface what will be stored of it, before it is measured: for values that something else follows from.
+  std::function<void(AttributedMesh*)> finish = nullptr;
 };
 
 struct SimplifiedSurface {

@@ -89,10 +89,10 @@ Status ApplySparse(const GltfDocument& document, const Json& sparse, AccessorDat
   return Status();
 }
 
-StatusOr<AccessorData> ReadUnnamed(const GltfDocument& document, const Json& accessor) {
+StatusOr<AccessorData> ReadElements(const GltfDocument& document, const Json& accessor, uint32_t components) {
   AccessorData data;
   LACERTA_ASSIGN_OR_RETURN(data.type, ParseComponentType(accessor));
-  LACERTA_ASSIGN_OR_RETURN(data.components, ParseComponents(accessor));
+  data.components = components;
   LACERTA_ASSIGN_OR_RETURN(data.count, GetIndex(accessor, "count"));
   data.normalized = IsTrue(Find(accessor, "normalized"));
   const uint64_t size = data.components * ComponentSize(data.type);
@@ -110,6 +110,30 @@ StatusOr<AccessorData> ReadUnnamed(const GltfDocument& document, const Json& acc
     return Unsupported("has no bufferView and thus no data");
   }
   if (sparse != nullptr) LACERTA_RETURN_IF_ERROR(ApplySparse(document, *sparse, &data));
+  return data;
+}
+
+StatusOr<AccessorData> ReadUnnamed(const GltfDocument& document, const Json& accessor) {
+  LACERTA_ASSIGN_OR_RETURN(const uint32_t components, ParseComponents(accessor));
+  return ReadElements(document, accessor, components);
+}
+
+StatusOr<AccessorData> ReadUnnamedMatrices(const GltfDocument& document, const Json& accessor) {
+  constexpr uint32_t kComponents = 16;
+  LACERTA_ASSIGN_OR_RETURN(const ComponentType type, ParseComponentType(accessor));
+  if (type != ComponentType::kFloat || AsString(Find(accessor, "type")) != "MAT4") {
+    return Unsupported("does not hold 4 x 4 matrices of floats");
+  }
+  return ReadElements(document, accessor, kComponents);
+}
+
+StatusOr<AccessorData> ReadNamed(const GltfDocument& document, uint64_t index,
+                                 StatusOr<AccessorData> (*read)(const GltfDocument&, const Json&)) {
+  const std::string name = "accessor " + std::to_string(index);
+  const Json* accessor = FindElement(document.json, "accessors", index);
+  if (accessor == nullptr) return InvalidData(name + " does not exist");
+  StatusOr<AccessorData> data = read(document, *accessor);
+  if (!data.ok()) return data.status().WithContext(name);
   return data;
 }
 
@@ -202,12 +226,11 @@ AccessorData MakeIndexAccessor(const std::vector<Triangle>& triangles, uint64_t 
 }
 
 StatusOr<AccessorData> ReadAccessor(const GltfDocument& document, uint64_t index) {
-  const std::string name = "accessor " + std::to_string(index);
-  const Json* accessor = FindElement(document.json, "accessors", index);
-  if (accessor == nullptr) return InvalidData(name + " does not exist");
-  StatusOr<AccessorData> data = ReadUnnamed(document, *accessor);
-  if (!data.ok()) return data.status().WithContext(name);
-  return data;
+  return ReadNamed(document, index, ReadUnnamed);
+}
+
+StatusOr<AccessorData> ReadMatrices(const GltfDocument& document, uint64_t index) {
+  return ReadNamed(document, index, ReadUnnamedMatrices);
 }
 
 }  // namespace lacerta

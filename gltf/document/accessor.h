@@ -50,6 +50,9 @@ std::vector<ComponentRange> ComponentRanges(const AccessorData& data);
 // an accessor without any data. Messages begin with "accessor N".
 StatusOr<AccessorData> ReadAccessor(const GltfDocument& document, uint64_t index);
 
+// The same for 4 x 4 matrices of floats, column by column: 16 components. Anything else is refused with kUnsupported.
+StatusOr<AccessorData> ReadMatrices(const GltfDocument& document, uint64_t index);
+
 }  // namespace lacerta
 
 #endif  // LACERTA_DOCUMENT_ACCESSOR_H_

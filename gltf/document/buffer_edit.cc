@@ -62,11 +62,10 @@ void AddBounds(const AccessorData& data, Json* accessor) {
 }
 
 std::vector<uint32_t> NonZeroElements(const AccessorData& data) {
-  const size_t size = data.components * ComponentSize(data.type);
   std::vector<uint32_t> elements;
   for (uint64_t i = 0; i < data.count; ++i) {
-    const auto begin = data.bytes.begin() + static_cast<std::ptrdiff_t>(i * size);
-    const bool zero = std::all_of(begin, begin + static_cast<std::ptrdiff_t>(size), [](uint8_t b) { return b == 0; });
+    bool zero = true;  // -0 is 0
+    for (uint32_t c = 0; c < data.components && zero; ++c) zero = data.Float(i, c) == 0.0f;
     if (!zero) elements.push_back(static_cast<uint32_t>(i));
   }
   return elements;
@@ -151,14 +150,20 @@ Json MakeAccessor(const AccessorData& data, AccessorUse use, bool bounds, GltfDo
 }
 
 bool SparseIsSmaller(const AccessorData& data) {
-  const size_t size = data.components * ComponentSize(data.type);
-  return NonZeroElements(data).size() * (size + sizeof(uint32_t)) < static_cast<size_t>(data.count) * size;
+  constexpr uint64_t kJson = 200;  // of a sparse part and its two views
+  const uint64_t size = data.components * ComponentSize(data.type);
+  return StoredSize(data) + kJson < data.count * size;
+}
+
+uint64_t StoredSize(const AccessorData& data) {
+  const uint64_t size = data.components * ComponentSize(data.type);
+  return std::min<uint64_t>(data.count * size, NonZeroElements(data).size() * (size + sizeof(uint32_t)));
 }
 
 Json MakeSparseAccessor(const AccessorData& data, bool bounds, GltfDocument* document) {
-  const std::vector<uint32_t> elements = NonZeroElements(data);
+  std::vector<uint32_t> elements = NonZeroElements(data);
+  if (elements.empty() && data.count > 0) elements.push_back(0);  // not every reader knows accessors without any data
   Json accessor = DescribeAccessor(data, bounds);
-  if (elements.empty()) return accessor;  // zeros are what an accessor without data holds
   const bool narrow = data.count <= uint64_t{std::numeric_limits<uint16_t>::max()} + 1;
   const size_t size = data.components * ComponentSize(data.type);
   Bytes indices;

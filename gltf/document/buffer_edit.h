@@ -25,7 +25,9 @@ Json MakeAccessor(const AccessorData& data, AccessorUse use, bool bounds, GltfDo
 // The same, but with the elements that are not zero alone, and no data for the others. The data may hold 2^32 elements at
 // most.
 Json MakeSparseAccessor(const AccessorData& data, bool bounds, GltfDocument* document);
-bool SparseIsSmaller(const AccessorData& data);
+bool SparseIsSmaller(const AccessorData& data);  // with its JSON
+// Bytes of data of the smaller of the two.
+uint64_t StoredSize(const AccessorData& data);
 // The same without any data: what a compressed primitive shows.
 Json DescribeAccessor(const AccessorData& data, bool bounds);
 

@@ -182,7 +182,8 @@ Primitive RoundAttributes(const Primitive& primitive, const DracoPrecision& prec
   Primitive rounded = primitive;
   for (Attribute& attribute : rounded.attributes) {
     if (const Lattice* lattice = LatticeOf(attribute, precision); lattice != nullptr) {
-      attribute.data = RoundToLattice(attribute.data, *lattice);
+      const bool is_weights = BeginsWith(attribute.name, "WEIGHTS_");
+      attribute.data = is_weights ? RoundKeepingSums(attribute.data, *lattice) : RoundToLattice(attribute.data, *lattice);
     } else if (const int bits = OctahedralBits(attribute, precision); bits > 0) {
       attribute.data = RoundOctahedral(attribute.data, bits);
     }

@@ -20,7 +20,8 @@ namespace lacerta {
 // opens along their common borders.
 struct DracoPrecision {
   Lattice positions;
-  // Of the other float attributes, by name. What is not in here stays exact, as integers do.
+  // Of the other float attributes, by name. What is not in here stays exact, as integers do. WEIGHTS_n keep their sums; their
+  // lattices begin at 0.
   std::map<std::string, Lattice> lattices;
   int normal_bits = 0;  // octahedral, of NORMAL: 2..30; 0: exact
 };

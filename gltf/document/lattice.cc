@@ -60,6 +60,41 @@ AccessorData RoundToLattice(const AccessorData& data, const Lattice& lattice) {
   return rounded;
 }
 
+AccessorData RoundKeepingSums(const AccessorData& data, const Lattice& lattice) {
+  constexpr uint32_t kMostComponents = 4;
+  const double step = static_cast<double>(lattice.range) / static_cast<double>((int64_t{1} << lattice.bits) - 1);
+  AccessorData rounded = data;
+  for (uint64_t i = 0; i < data.count; ++i) {
+    std::array<int64_t, kMostComponents> k = {};
+    std::array<double, kMostComponents> exact = {};
+    double sum = 0.0;
+    int64_t missing = 0;
+    for (uint32_t c = 0; c < data.components; ++c) {
+      exact[c] = static_cast<double>(data.Float(i, c)) / step;
+      k[c] = lattice.Round(data.Float(i, c), c);
+      sum += exact[c];
+      missing -= k[c];
+    }
+    constexpr double kMost = 1e15;  // beyond, there is nothing to be kept
+    missing = std::fabs(sum) < kMost ? missing + static_cast<int64_t>(std::floor(sum + 0.5)) : 0;
+    // Not more than half a step is missing in each component.
+    for (uint32_t tries = 0; tries < data.components && missing != 0; ++tries) {
+      const int64_t move = missing > 0 ? 1 : -1;
+      uint32_t best = data.components;
+      double most = 0.0;  // by how much the component was rounded the other way
+      for (uint32_t c = 0; c < data.components; ++c) {
+        const double left = static_cast<double>(move) * (exact[c] - static_cast<double>(k[c]));
+        if (left > most) most = left, best = c;
+      }
+      if (best == data.components) break;
+      k[best] += move;
+      missing -= move;
+    }
+    for (uint32_t c = 0; c < data.components; ++c) Store(lattice.At(k[c], c), i * data.components + c, &rounded.bytes);
+  }
+  return rounded;
+}
+
 AccessorData RoundOctahedral(const AccessorData& normals, int bits) {
   draco::OctahedronToolBox box;
   box.SetQuantizationBits(bits);

@@ -32,6 +32,10 @@ Lattice LatticeOfStep(const Lattice& box, float step);
 // Every component of float data at its lattice point.
 AccessorData RoundToLattice(const AccessorData& data, const Lattice& lattice);
 
+// The same with the components of every element going up or down so that their sum is the lattice point nearest to the sum
+// there was: weights keep the sum 1. Float data not below 0, a lattice from the origin 0.
+AccessorData RoundKeepingSums(const AccessorData& data, const Lattice& lattice);
+
 // Unit vectors (float, VEC3) as Draco's octahedral coding of `bits` per coordinate, 2..30, returns them.
 AccessorData RoundOctahedral(const AccessorData& normals, int bits);
 

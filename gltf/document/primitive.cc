@@ -123,6 +123,12 @@ const Attribute* Primitive::Find(const std::string& name) const {
   return found == attributes.end() ? nullptr : &*found;
 }
 
+std::vector<const Primitive*> PointersTo(const std::vector<Primitive>& primitives) {
+  std::vector<const Primitive*> pointers;
+  for (const Primitive& primitive : primitives) pointers.push_back(&primitive);
+  return pointers;
+}
+
 StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& primitive, const DecodeLimits& limits) {
   LACERTA_ASSIGN_OR_RETURN(const uint64_t mode, GetIndex(primitive, "mode", kTriangles));
   if (mode < kTriangles || mode > kTriangleFan) return Unsupported("holds points or lines, no triangles");

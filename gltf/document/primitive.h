@@ -26,6 +26,9 @@ struct Primitive {
   const Attribute* Find(const std::string& name) const;
 };
 
+// Pointers to all of them, in order.
+std::vector<const Primitive*> PointersTo(const std::vector<Primitive>& primitives);
+
 // Reads an element of meshes[].primitives: triangles, strips and fans, core accessors or KHR_draco_mesh_compression.
 // Positions are finite and indices in range afterwards. Fails with kUnsupported for points and lines, kInvalidData for
 // what breaks the format; messages name accessor and index.

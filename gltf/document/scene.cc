@@ -7,17 +7,6 @@
 namespace lacerta {
 namespace {
 
-Transform Multiply(const Transform& a, const Transform& b) {
-  Transform result;
-  const Vec3d origin = Apply(a, {});
-  for (size_t column = 0; column < 4; ++column) {
-    const Vec3d image = Apply(a, {b[3 * column], b[3 * column + 1], b[3 * column + 2]});
-    const Vec3d moved = column == 3 ? image : image - origin;
-    for (int axis = 0; axis < 3; ++axis) result[3 * column + static_cast<size_t>(axis)] = moved[axis];
-  }
-  return result;
-}
-
 // The numbers of node[key], or `standard` where it has none.
 template <size_t kCount>
 std::array<double, kCount> Numbers(const Json& node, const char* key, std::array<double, kCount> standard) {
@@ -26,28 +15,6 @@ std::array<double, kCount> Numbers(const Json& node, const char* key, std::array
     if (number.has_value()) standard[i] = *number;
   }
   return standard;
-}
-
-Transform LocalTransform(const Json& node) {
-  if (ArraySize(node, "matrix") == 16) {
-    const auto m = Numbers<16>(node, "matrix", {});
-    return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10], m[12], m[13], m[14]};
-  }
-  const auto t = Numbers<3>(node, "translation", {0, 0, 0});
-  const auto [x, y, z, w] = Numbers<4>(node, "rotation", {0, 0, 0, 1});
-  const auto s = Numbers<3>(node, "scale", {1, 1, 1});
-  return {s[0] * (1 - 2 * (y * y + z * z)),
-          s[0] * 2 * (x * y + z * w),
-          s[0] * 2 * (x * z - y * w),
-          s[1] * 2 * (x * y - z * w),
-          s[1] * (1 - 2 * (x * x + z * z)),
-          s[1] * 2 * (y * z + x * w),
-          s[2] * 2 * (x * z + y * w),
-          s[2] * 2 * (y * z - x * w),
-          s[2] * (1 - 2 * (x * x + y * y)),
-          t[0],
-          t[1],
-          t[2]};
 }
 
 void PushNodes(const Json& parent, const char* key, const Transform& transform,
@@ -62,6 +29,48 @@ void PushNodes(const Json& parent, const char* key, const Transform& transform,
 Vec3d Apply(const Transform& m, const Vec3d& p) {
   return {m[0] * p.x + m[3] * p.y + m[6] * p.z + m[9], m[1] * p.x + m[4] * p.y + m[7] * p.z + m[10],
           m[2] * p.x + m[5] * p.y + m[8] * p.z + m[11]};
+}
+
+Transform Multiply(const Transform& a, const Transform& b) {
+  Transform result;
+  const Vec3d origin = Apply(a, {});
+  for (size_t column = 0; column < 4; ++column) {
+    const Vec3d image = Apply(a, {b[3 * column], b[3 * column + 1], b[3 * column + 2]});
+    const Vec3d moved = column == 3 ? image : image - origin;
+    for (int axis = 0; axis < 3; ++axis) result[3 * column + static_cast<size_t>(axis)] = moved[axis];
+  }
+  return result;
+}
+
+NodePlacement ReadPlacement(const Json& node) {
+  return {Numbers<3>(node, "translation", {0, 0, 0}), Numbers<4>(node, "rotation", {0, 0, 0, 1}),
+          Numbers<3>(node, "scale", {1, 1, 1})};
+}
+
+Transform ToTransform(const NodePlacement& placement) {
+  const auto& t = placement.translation;
+  const auto [x, y, z, w] = placement.rotation;
+  const auto& s = placement.scale;
+  return {s[0] * (1 - 2 * (y * y + z * z)),
+          s[0] * 2 * (x * y + z * w),
+          s[0] * 2 * (x * z - y * w),
+          s[1] * 2 * (x * y - z * w),
+          s[1] * (1 - 2 * (x * x + z * z)),
+          s[1] * 2 * (y * z + x * w),
+          s[2] * 2 * (x * z + y * w),
+          s[2] * 2 * (y * z - x * w),
+          s[2] * (1 - 2 * (x * x + y * y)),
+          t[0],
+          t[1],
+          t[2]};
+}
+
+Transform LocalTransform(const Json& node) {
+  if (ArraySize(node, "matrix") == 16) {
+    const auto m = Numbers<16>(node, "matrix", {});
+    return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10], m[12], m[13], m[14]};
+  }
+  return ToTransform(ReadPlacement(node));
 }
 
 double Determinant(const Transform& m) {

@@ -17,9 +17,20 @@ using Transform = std::array<double, 12>;
 inline constexpr Transform kIdentity = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
 
 Vec3d Apply(const Transform& m, const Vec3d& p);
+Transform Multiply(const Transform& a, const Transform& b);  // b first
 double Determinant(const Transform& m);
 // Of the images of the three axes the length of the longest: what errors grow by, but for shear.
 double LargestStretch(const Transform& m);
+
+// What a node says of where it stands under its parent, in the parts that animations set.
+struct NodePlacement {
+  std::array<double, 3> translation = {0, 0, 0};
+  std::array<double, 4> rotation = {0, 0, 0, 1};  // unit quaternion x, y, z, w
+  std::array<double, 3> scale = {1, 1, 1};
+};
+NodePlacement ReadPlacement(const Json& node);  // of one without matrix
+Transform ToTransform(const NodePlacement& placement);
+Transform LocalTransform(const Json& node);
 
 struct Instance {
   uint64_t mesh = 0;

@@ -1,14 +1,21 @@
 #include "pack/attributed_family.h"
 
 #include <cstdlib>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <utility>
+
+#include "pack/morphs.h"
 
 namespace lacerta {
 namespace {
 
 constexpr double kMostTurned = 5e-4;
+// Offsets are off beside the surface that they start from.
+constexpr double kShareOfTargets = 0.6;
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 
 bool BeginsWith(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
 
@@ -18,19 +25,30 @@ std::optional<AttributeKind> KindOf(const Attribute& attribute) {
   if (BeginsWith(name, "COLOR_")) return AttributeKind::kColor;
   if (name == "NORMAL" && attribute.data.components == 3) return AttributeKind::kNormal;
   if (name == "TANGENT" && attribute.data.components == 4) return AttributeKind::kTangent;
+  if (IsTargetAttribute(name)) return AttributeKind::kGeneric;
   return std::nullopt;
 }
 
 uint64_t SetOf(const std::string& name) { return std::strtoull(name.c_str() + std::strlen("TEXCOORD_"), nullptr, 10); }
 
+StatusOr<VertexSoup::Attribute> PosesOf(const Primitive& primitive, const Skin& skin) {
+  LACERTA_ASSIGN_OR_RETURN(const VertexInfluences influences, ReadInfluences(primitive, skin.num_joints));
+  VertexSoup::Attribute poses{kPosesName, AttributeKind::kGeneric, static_cast<uint32_t>(3 * skin.poses.size()), {}};
+  const TriangleMesh surface = Surface(primitive);
+  for (size_t v = 0; v < surface.positions.size(); ++v) {
+    skin.AppendPoses(Vec3Cast<double>(surface.positions[v]), influences.Of(v), &poses.values);
+  }
+  return poses;
+}
+
 StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const TexelScale& scale,
-                            OtherAttributes others) {
+                            OtherAttributes others, const Skin* skin) {
   VertexSoup soup;
   TriangleMesh surface = Surface(primitive);
   soup.positions = std::move(surface.positions);
   soup.triangles = std::move(surface.triangles);
   for (const Attribute& attribute : primitive.attributes) {
-    if (attribute.name == "POSITION") continue;
+    if (attribute.name == "POSITION" || (skin != nullptr && IsSkinAttribute(attribute.name))) continue;
     const std::optional<AttributeKind> kind = KindOf(attribute);
     if (!kind.has_value() && others == OtherAttributes::kLeaveOut) continue;
     if (!kind.has_value()) return Unsupported("has the attribute " + attribute.name + ", which is not simplified");
@@ -40,6 +58,10 @@ StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const Tex
       for (uint32_t c = 0; c < values.components; ++c) values.values.push_back(attribute.data.Float(v, c));
     }
     soup.attributes.push_back(std::move(values));
+  }
+  if (skin != nullptr) {
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute poses, PosesOf(primitive, *skin));
+    soup.attributes.push_back(std::move(poses));
   }
   return soup;
 }
@@ -56,19 +78,20 @@ std::string SoupName(const Attribute& attribute, size_t member, const TexelScale
 }
 
 StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
-                                          OtherAttributes others) {
+                                          OtherAttributes others, const Skin* skin) {
   std::vector<VertexSoup> soups;
   for (size_t m = 0; m < primitives.size(); ++m) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale, others));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale, others, skin));
     soups.push_back(std::move(soup));
   }
   return WeldSoups(soups);
 }
 
-bool HasOtherAttributes(const std::vector<const Primitive*>& primitives) {
+bool HasOtherAttributes(const std::vector<const Primitive*>& primitives, const Skin* skin) {
   for (const Primitive* primitive : primitives) {
     for (const Attribute& attribute : primitive->attributes) {
-      if (attribute.name != "POSITION" && !KindOf(attribute).has_value()) return true;
+      const bool is_other = attribute.name != "POSITION" && !KindOf(attribute).has_value();
+      if (is_other && (skin == nullptr || !IsSkinAttribute(attribute.name))) return true;
     }
   }
   return false;
@@ -79,11 +102,22 @@ ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const A
   ErrorTargets result;
   result.distance = error;
   result.turned = kMostTurned;
+  const auto bound_everywhere = [&](double bound) {
+    result.everywhere.resize(original.attributes.size(), std::numeric_limits<double>::infinity());
+    result.everywhere[result.attributes.size()] = bound;
+    result.attributes.push_back(bound);
+  };
   for (const MeshAttribute& attribute : original.attributes) {
     if (attribute.kind == AttributeKind::kTextureCoordinates) {
       result.attributes.push_back(targets.uv_texels * static_cast<double>(texel_side) / ScaleOf(attribute));
     } else if (attribute.kind == AttributeKind::kColor) {
       result.attributes.push_back(targets.color * 2.0);  // integers come back rounded
+    } else if (attribute.name == kPosesName) {
+      bound_everywhere(error);
+    } else if (IsTargetPosition(attribute.name)) {
+      bound_everywhere(kShareOfTargets * error);
+    } else if (IsTargetAttribute(attribute.name)) {
+      result.attributes.push_back(targets.normal_degrees * kRadiansPerDegree);
     } else {
       result.attributes.push_back(targets.normal_degrees);
     }

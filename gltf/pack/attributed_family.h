@@ -11,6 +11,7 @@
 #include "lacerta/attributed_mesh.h"
 #include "lacerta/gltf.h"
 #include "lacerta/status.h"
+#include "pack/skin.h"
 #include "remesh/simplify_to_errors.h"
 
 namespace lacerta {
@@ -22,18 +23,23 @@ using TexelScale = std::function<double(size_t member, uint64_t set)>;
 // its own target.
 std::string SoupName(const Attribute& attribute, size_t member, const TexelScale& scale);
 
-// What becomes of attributes that have no meaning between vertices (joints, application attributes).
+// What becomes of attributes that have no meaning between vertices (joints without a skin, application attributes).
 enum class OtherAttributes { kRefuse, kLeaveOut };
 
-// Primitive m becomes group m. Fails with kUnsupported on attributes to refuse, and like WeldSoups.
+// In place of joints and weights: where the surface is in every pose of the skin, so that a difference is a distance in mesh
+// units, root mean square over the poses. 3 numbers for each pose, over the root of the number of poses.
+inline constexpr const char* kPosesName = "POSES";
+
+// Primitive m becomes group m. Fails with kUnsupported on attributes to refuse, and like WeldSoups and, where there is a skin,
+// ReadInfluences.
 StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
-                                          OtherAttributes others = OtherAttributes::kRefuse);
+                                          OtherAttributes others = OtherAttributes::kRefuse, const Skin* skin = nullptr);
 
 // Whether there are any of those.
-bool HasOtherAttributes(const std::vector<const Primitive*>& primitives);
+bool HasOtherAttributes(const std::vector<const Primitive*>& primitives, const Skin* skin = nullptr);
 
-// The targets in the units of SurfaceErrorMeter with textures of `texel_side`; `error` in mesh units. No more than one
-// part in two thousand of the area may look away from the original.
+// The targets in the units of SurfaceErrorMeter with textures of `texel_side`; `error` in mesh units, of the surface and, over
+// the whole of it, of its poses; offsets of morph targets get a share of it. No more than one part in two thousand of the area may look away from the original.
 ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const AttributeTargets& targets,
                            uint64_t texel_side);
 

@@ -1,30 +1,67 @@
 #include "pack/family_meter.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace lacerta {
+namespace {
+
+constexpr uint64_t kSamples = 100'000;
+constexpr uint64_t kPoseSamples = 50'000;  // in each pose
+
+}  // namespace
 
 FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error, const AttributeTargets& targets,
-                         uint64_t texel_side, TexelScale texels_per_unit)
+                         uint64_t texel_side, TexelScale texels_per_unit, const Skin* skin)
     : primitives_(std::move(primitives)), error_(error), attribute_targets_(targets),
-      texels_per_unit_(std::move(texels_per_unit)) {
-  StatusOr<AttributedMesh> original = ToAttributedMesh(primitives_, texels_per_unit_, OtherAttributes::kLeaveOut);
+      texels_per_unit_(std::move(texels_per_unit)), skin_(skin) {
+  StatusOr<AttributedMesh> original = ToAttributedMesh(primitives_, texels_per_unit_, OtherAttributes::kLeaveOut, skin_);
   status_ = original.status();
   if (!original.ok()) return;
   StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(original.value(), static_cast<double>(texel_side));
   status_ = meter.status();
   if (!meter.ok()) return;
+  for (size_t pose = 0; skin_ != nullptr && pose < skin_->poses.size(); ++pose) {
+    StatusOr<TriangleMesh> surface = PosedSurface(primitives_, *skin_, pose);
+    status_ = surface.status();
+    if (!status_.ok()) return;
+    StatusOr<SurfaceDistanceMeter> posed = SurfaceDistanceMeter::Create(surface.value());
+    status_ = posed.status();
+    if (!status_.ok()) return;
+    poses_.push_back(std::move(posed).value());
+  }
   original_ = std::move(original).value();
   meter_ = std::move(meter).value();
   targets_ = FamilyTargets(original_, error, targets, texel_side);
-  leaves_out_ = HasOtherAttributes(primitives_);
+  leaves_out_ = HasOtherAttributes(primitives_, skin_);
 }
 
 StatusOr<SurfaceErrors> FamilyMeter::Measure(const std::vector<const Primitive*>& stored) const {
-  constexpr uint64_t kSamples = 100'000;
   LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh,
-                           ToAttributedMesh(stored, texels_per_unit_, OtherAttributes::kLeaveOut));
-  return meter_->Measure(mesh, kSamples);
+                           ToAttributedMesh(stored, texels_per_unit_, OtherAttributes::kLeaveOut, skin_));
+  LACERTA_ASSIGN_OR_RETURN(SurfaceErrors errors, meter_->Measure(mesh, kSamples));
+  if (skin_ == nullptr) return errors;
+  AttributeError& poses = errors.attributes[*IndexOf(kPosesName)];
+  LACERTA_ASSIGN_OR_RETURN(poses.rms, WorstPose(stored));
+  poses.rms_99 = poses.rms;
+  return errors;
+}
+
+ErrorTargets FamilyMeter::TargetsWith(const std::vector<double>& everywhere) const {
+  ErrorTargets targets = targets_;
+  if (targets.everywhere.empty()) targets.everywhere = everywhere;
+  for (size_t a = 0; a < everywhere.size(); ++a) targets.everywhere[a] = std::min(targets.everywhere[a], everywhere[a]);
+  return targets;
+}
+
+StatusOr<double> FamilyMeter::WorstPose(const std::vector<const Primitive*>& stored) const {
+  double worst = 0.0;
+  for (size_t pose = 0; pose < poses_.size(); ++pose) {
+    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh surface, PosedSurface(stored, *skin_, pose));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, poses_[pose].Measure(surface, SurfaceDistanceOptions::RmsOnly(kPoseSamples)));
+    worst = std::max(worst, distance.Rms());
+  }
+  return worst;
 }
 
 std::optional<size_t> FamilyMeter::IndexOf(const std::string& soup_name) const {

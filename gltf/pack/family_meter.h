@@ -11,6 +11,7 @@
 #include "lacerta/attributed_mesh.h"
 #include "lacerta/gltf.h"
 #include "lacerta/status.h"
+#include "lacerta/surface_distance.h"
 #include "pack/attributed_family.h"
 #include "remesh/simplify_to_errors.h"
 
@@ -19,24 +20,33 @@ namespace lacerta {
 class FamilyMeter {
  public:
   // `error` (d_S, mesh units) and `targets` (RMS over the 99 % of the area where it is least) are what is allowed;
-  // `texel_side` is the side of the texture that texels are of. Refers to the primitives.
+  // `texel_side` is the side of the texture that texels are of. With a skin, `error` is allowed in all its poses, too. Refers to
+  // the primitives and to the skin.
   FamilyMeter(std::vector<const Primitive*> primitives, double error, const AttributeTargets& targets,
-              uint64_t texel_side, TexelScale texels_per_unit);
+              uint64_t texel_side, TexelScale texels_per_unit, const Skin* skin = nullptr);
 
-  // Not OK where there is no area, so nothing to measure: nothing below but the first five is to be called then.
+  // Not OK where there is no area, so nothing to measure: nothing below but the first six is to be called then.
   const Status& status() const { return status_; }
   const std::vector<const Primitive*>& primitives() const { return primitives_; }
   const AttributeTargets& attribute_targets() const { return attribute_targets_; }
   const TexelScale& texels_per_unit() const { return texels_per_unit_; }
   double error() const { return error_; }
+  const Skin* skin() const { return skin_; }  // null: nothing moves the surface
 
   const AttributedMesh& original() const { return original_; }  // without what ToAttributedMesh leaves out
   const SurfaceErrorMeter& meter() const { return *meter_; }
   const ErrorTargets& targets() const { return targets_; }
-  bool leaves_out() const { return leaves_out_; }  // joints, application attributes
+  bool leaves_out() const { return leaves_out_; }  // joints without a skin, application attributes
 
-  // Of primitives stored in the order of the originals. Fails where one has lost its area.
+  // The targets with bounds `everywhere` (as in ErrorTargets; may be empty) besides those that they have.
+  ErrorTargets TargetsWith(const std::vector<double>& everywhere) const;
+
+  // Of primitives stored in the order of the originals. With a skin, the error of kPosesName is WorstPose. Fails where one has lost
+  // its area.
   StatusOr<SurfaceErrors> Measure(const std::vector<const Primitive*>& stored) const;
+
+  // d_S of the surface in the pose in which it is farthest from the original's, mesh units. Only with a skin.
+  StatusOr<double> WorstPose(const std::vector<const Primitive*>& stored) const;
 
   // The attribute of the original whose name in the surface (SoupName) this is; empty where it was left out.
   std::optional<size_t> IndexOf(const std::string& soup_name) const;
@@ -49,9 +59,11 @@ class FamilyMeter {
   const double error_;
   const AttributeTargets attribute_targets_;
   const TexelScale texels_per_unit_;
+  const Skin* const skin_;
   Status status_;
   AttributedMesh original_;
   std::optional<SurfaceErrorMeter> meter_;
+  std::vector<SurfaceDistanceMeter> poses_;  // of the skin's
   ErrorTargets targets_;
   bool leaves_out_ = false;
 };

@@ -113,6 +113,7 @@ StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const Surfac
 StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, size_t most_bytes) {
   LACERTA_RETURN_IF_ERROR(family.status());
   if (family.leaves_out()) return Unsupported("has attributes that cannot be interpolated");
+  if (family.skin() != nullptr) return Unsupported("has a skin");
   LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original, PlainNames(family.original()));
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(original, family.meter().texture_size()));
   AttributedSearchOptions search;

@@ -18,7 +18,7 @@ namespace {
 void StoreDraco(const PrimitivePlan& plan, AccessorPool* pool, GltfDocument* document) {
   const DracoEncoded& encoded = *plan.draco;
   NewGeometry geometry = DescribedGeometry(encoded.decoded);
-  geometry.targets = TargetAccessors(plan.targets, plan.places[0], document);
+  geometry.targets = TargetAccessors(plan.targets, document);
   Json ids = Json::object();
   for (const DracoAttributeId& id : encoded.ids) ids[id.name] = id.id;
   const uint64_t view = AddBufferView(AddBuffer(encoded.bytes, document), 0, encoded.bytes.size(), document);

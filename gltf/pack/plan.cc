@@ -8,10 +8,13 @@
 #include "document/normals.h"
 #include "lacerta/surface_distance.h"
 #include "pack/family.h"
+#include "pack/find_skin.h"
+#include "pack/influence_slots.h"
+#include "pack/morphs.h"
 #include "pack/rounded.h"
 #include "pack/simplified.h"
+#include "pack/simplified_morphs.h"
 #include "pack/texel_scale.h"
-#include "pack/vertex_match.h"
 
 namespace lacerta {
 namespace {
@@ -47,6 +50,7 @@ struct Context {
   std::vector<size_t> family_of;  // parallel to `sources`; kNone where there is no primitive
   Families families;
   uint64_t texel_side = 1024;
+  std::vector<ScenePose> poses;  // where there are skins
 };
 constexpr size_t kNone = ~size_t{0};
 
@@ -55,6 +59,7 @@ StatusOr<Context> MakeContext(const GltfDocument& document, const PackOptions& o
   context.document = &document;
   context.options = &options;
   context.texel_side = TexelSide(document);
+  if (ArraySize(document.json, "skins") > 0) context.poses = ScenePoses(document);
   LACERTA_ASSIGN_OR_RETURN(context.sources, ReadSources(document));
   std::vector<PlacedSurface> surfaces;
   std::vector<size_t> source_of;
@@ -67,7 +72,12 @@ StatusOr<Context> MakeContext(const GltfDocument& document, const PackOptions& o
   context.family_of.assign(context.sources.size(), kNone);
   for (size_t s = 0; s < surfaces.size(); ++s) context.family_of[source_of[s]] = context.families.of_surface[s];
   for (Family& family : context.families.families) {
-    for (size_t& member : family.members) member = source_of[member];
+    std::vector<Primitive*> primitives;
+    for (size_t& member : family.members) {
+      member = source_of[member];
+      primitives.push_back(&*context.sources[member].primitive);
+    }
+    ArrangeInfluences(std::move(primitives));
   }
   return context;
 }
@@ -105,22 +115,6 @@ void AddReason(const std::string& reason, PrimitiveReport* report) {
   report->reason += (report->reason.empty() ? "" : "; ") + reason;
 }
 
-// Morph targets in the order that the vertices have after coding; false where that order does not tell.
-bool ReorderTargets(const Source& source, const DracoPrecision& precision, const Primitive& decoded,
-                    std::vector<MorphTarget>* targets) {
-  std::vector<AccessorData> tied;
-  for (const MorphTarget& target : source.targets) {
-    for (const Attribute& attribute : target) tied.push_back(attribute.data);
-  }
-  const auto order = MatchVertices(RoundAttributes(*source.primitive, precision), decoded, precision, tied);
-  if (!order.has_value()) return false;
-  *targets = source.targets;
-  for (MorphTarget& target : *targets) {
-    for (Attribute& attribute : target) attribute.data = Reorder(attribute.data, *order);
-  }
-  return true;
-}
-
 // A primitive in Draco form, and what its report is to say then.
 struct DracoCandidate {
   DracoEncoded encoded;
@@ -136,7 +130,9 @@ struct FamilyCandidate {
 
 uint64_t StoredBytes(const FamilyCandidate& candidate) {
   uint64_t sum = 0;
-  for (const DracoCandidate& member : candidate.members) sum += member.encoded.bytes.size() + kDracoJsonBytes;
+  for (const DracoCandidate& member : candidate.members) {
+    sum += member.encoded.bytes.size() + kDracoJsonBytes + BytesOfTargets(member.targets);
+  }
   return sum;
 }
 
@@ -152,23 +148,33 @@ std::vector<const Primitive*> PrimitivesOf(const Context& context, size_t family
   return primitives;
 }
 
+bool HasJoints(const Source& source) {
+  const std::vector<Attribute>& attributes = source.primitive->attributes;
+  return std::any_of(attributes.begin(), attributes.end(), [](const Attribute& a) { return IsSkinAttribute(a.name); });
+}
+
+// What moves a family; empty where nothing does.
+StatusOr<std::optional<Skin>> SkinOf(const Context& context, size_t family) {
+  std::vector<const Source*> sources;
+  for (const size_t member : context.families.families[family].members) sources.push_back(&context.sources[member]);
+  if (std::none_of(sources.begin(), sources.end(), [](const Source* source) { return HasJoints(*source); })) return std::optional<Skin>();
+  LACERTA_ASSIGN_OR_RETURN(Skin skin, FindSkin(*context.document, sources, context.poses));
+  return std::optional<Skin>(std::move(skin));
+}
+
 TexelScale ScaleOf(const Context& context, size_t family) {
   return [&context, family](size_t member, uint64_t set) {
     return TexelsOf(context, context.families.families[family].members[member], set);
   };
 }
 
-// Fails with kUnsupported where morph targets cannot follow.
-StatusOr<FamilyCandidate> ToCandidate(const Context& context, size_t family, RoundedFamily rounded) {
-  const std::vector<size_t>& members = context.families.families[family].members;
+// targets: of each member in the order of its decoded vertices; empty: none has any.
+FamilyCandidate ToCandidate(RoundedFamily rounded, std::vector<std::vector<MorphTarget>> targets) {
   FamilyCandidate candidate;
-  for (size_t m = 0; m < members.size(); ++m) {
-    const Source& source = context.sources[members[m]];
+  for (size_t m = 0; m < rounded.members.size(); ++m) {
     DracoCandidate member;
     member.encoded = std::move(rounded.members[m]);
-    if (!source.targets.empty() && !ReorderTargets(source, rounded.precisions[m], member.encoded.decoded, &member.targets)) {
-      return Unsupported("has morph targets that tell apart what its other attributes do not");
-    }
+    if (!targets.empty()) member.targets = std::move(targets[m]);
     member.report.error = rounded.error;
     member.report.position_bits = rounded.precisions[m].positions.bits;
     member.report.attributes = std::move(rounded.reports[m]);
@@ -176,6 +182,21 @@ StatusOr<FamilyCandidate> ToCandidate(const Context& context, size_t family, Rou
   }
   candidate.bytes = StoredBytes(candidate);
   return candidate;
+}
+
+// Fails with kUnsupported where morph targets cannot follow.
+StatusOr<FamilyCandidate> ToCandidate(const Context& context, size_t family, RoundedFamily rounded) {
+  std::vector<std::vector<MorphTarget>> targets;
+  const std::vector<size_t>& members = context.families.families[family].members;
+  for (size_t m = 0; m < members.size(); ++m) {
+    const Source& source = context.sources[members[m]];
+    targets.emplace_back();
+    if (source.targets.empty()) continue;
+    auto reordered = ReorderTargets({&*source.primitive, &source.targets}, rounded.precisions[m], rounded.members[m].decoded);
+    if (!reordered.has_value()) return Unsupported("has morph targets that tell apart what its other attributes do not");
+    targets.back() = std::move(*reordered);
+  }
+  return ToCandidate(std::move(rounded), std::move(targets));
 }
 
 // With all vertices, where that is no hopeless way to stay under `most_bytes`. Sets *everywhere to RoundedFamily's.
@@ -188,14 +209,25 @@ StatusOr<FamilyCandidate> WithAllVertices(const Context& context, size_t family,
   return ToCandidate(context, family, std::move(rounded));
 }
 
+bool HasTargets(const Context& context, size_t family) {
+  const std::vector<size_t>& members = context.families.families[family].members;
+  return std::any_of(members.begin(), members.end(), [&](size_t member) { return !context.sources[member].targets.empty(); });
+}
+
 StatusOr<FamilyCandidate> Simplified(const Context& context, size_t family, const FamilyMeter& meter,
                                      const std::vector<double>& everywhere) {
-  for (const size_t member : context.families.families[family].members) {
-    if (!context.sources[member].targets.empty()) return Unsupported("has morph targets");
-  }
   const bool held = context.options->attributes.normals_everywhere;
-  LACERTA_ASSIGN_OR_RETURN(RoundedFamily simplified, SimplifyFamily(meter, held ? everywhere : std::vector<double>()));
-  LACERTA_ASSIGN_OR_RETURN(FamilyCandidate candidate, ToCandidate(context, family, std::move(simplified)));
+  const std::vector<double> bounds = held ? everywhere : std::vector<double>();
+  FamilyCandidate candidate;
+  if (HasTargets(context, family)) {
+    std::vector<const std::vector<MorphTarget>*> targets;
+    for (const size_t member : context.families.families[family].members) targets.push_back(&context.sources[member].targets);
+    LACERTA_ASSIGN_OR_RETURN(MorphedFamily simplified, SimplifyMorphedFamily(meter, targets, context.texel_side, bounds));
+    candidate = ToCandidate(std::move(simplified.rounded), std::move(simplified.targets));
+  } else {
+    LACERTA_ASSIGN_OR_RETURN(RoundedFamily simplified, SimplifyFamily(meter, bounds));
+    candidate = ToCandidate(std::move(simplified), {});
+  }
   for (size_t m = 0; m < candidate.members.size(); ++m) {
     candidate.members[m].report.reason =
         "simplified from " + std::to_string(meter.primitives()[m]->triangles.size()) + " to " +
@@ -213,9 +245,7 @@ bool PlanStream(size_t family, const Context& context, const FamilyMeter& meter,
   const LevelChoice levels = options.encode.levels;
   if (levels == LevelChoice::kNever || options.fallback != Fallback::kDraco) return false;
   if (!options.simplify && levels != LevelChoice::kAlways) return false;
-  for (const size_t member : members) {
-    if (!context.sources[member].targets.empty()) return false;
-  }
+  if (HasTargets(context, family)) return false;
   size_t most_bytes = std::numeric_limits<size_t>::max();
   if (levels != LevelChoice::kAlways) {
     const uint64_t json = kDracoJsonBytes * members.size() + kProgressiveJsonBytes;
@@ -251,11 +281,12 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
   const std::vector<size_t>& members = context.families.families[family].members;
   const bool is_stream = (*plans)[members[0]].progressive.has_value();
   uint64_t least = 0;
-  for (const size_t member : members) least += (*plans)[member].report.bytes_before;
+  for (const size_t member : members) least += (*plans)[member].report.bytes_before + BytesOfTargets(context.sources[member].targets);
   if (is_stream) least = std::min(least, (*plans)[members[0]].progressive->stream.size() + kDracoJsonBytes + kProgressiveJsonBytes);
   std::vector<double> everywhere;
-  const FamilyMeter meter(PrimitivesOf(context, family), ErrorOf(context, family), context.options->attributes,
-                          context.texel_side, ScaleOf(context, family));
+  const StatusOr<std::optional<Skin>> skin = SkinOf(context, family);
+  const FamilyMeter meter(PrimitivesOf(context, family), ErrorOf(context, family), context.options->attributes, context.texel_side,
+                          ScaleOf(context, family), skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
   const uint64_t most_bytes = is_stream ? least : std::numeric_limits<uint64_t>::max();
   StatusOr<FamilyCandidate> chosen = WithAllVertices(context, family, meter, most_bytes, &everywhere);
   std::string against = chosen.ok() ? "" : chosen.status().message();
@@ -266,7 +297,8 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
   if (chosen.ok()) least = chosen.value().bytes;
   std::string simplified_reason;
   if (context.options->simplify && !is_stream) {  // streams have tried a simplified surface themselves
-    StatusOr<FamilyCandidate> simplified = Simplified(context, family, meter, everywhere);
+    StatusOr<FamilyCandidate> simplified = skin.status();
+    if (skin.ok()) simplified = Simplified(context, family, meter, everywhere);
     if (simplified.ok() && simplified.value().bytes < least) {
       chosen = std::move(simplified);
       least = chosen.value().bytes;

@@ -49,19 +49,14 @@ NewGeometry DescribedGeometry(const Primitive& primitive) {
   return geometry;
 }
 
-std::vector<std::vector<NamedAccessor>> TargetAccessors(const std::vector<MorphTarget>& targets, const Place& place,
-                                                        GltfDocument* document) {
+std::vector<std::vector<NamedAccessor>> TargetAccessors(const std::vector<MorphTarget>& targets, GltfDocument* document) {
   std::vector<std::vector<NamedAccessor>> result;
-  for (size_t t = 0; t < targets.size(); ++t) {
+  for (const MorphTarget& target : targets) {
     std::vector<NamedAccessor> accessors;
-    for (const Attribute& attribute : targets[t]) {
-      const Json* old_target = FindElement(PrimitiveAt(*document, place), "targets", t);
-      const Json* old_index = old_target == nullptr ? nullptr : Find(*old_target, attribute.name.c_str());
-      const Json* old = old_index == nullptr ? nullptr : FindElement(document->json, "accessors", *AsIndex(old_index));
-      const bool sparse = old != nullptr && Find(*old, "sparse") != nullptr && SparseIsSmaller(attribute.data);
+    for (const Attribute& attribute : target) {
       const bool bounds = attribute.name == "POSITION";
-      Json accessor = sparse ? MakeSparseAccessor(attribute.data, bounds, document)
-                             : MakeAccessor(attribute.data, AccessorUse::kAttribute, bounds, document);
+      Json accessor = SparseIsSmaller(attribute.data) ? MakeSparseAccessor(attribute.data, bounds, document)
+                                                      : MakeAccessor(attribute.data, AccessorUse::kAttribute, bounds, document);
       accessors.push_back({attribute.name, std::move(accessor)});
     }
     result.push_back(std::move(accessors));

@@ -36,9 +36,8 @@ NewGeometry PlainGeometry(const Primitive& primitive, GltfDocument* document);
 NewGeometry DescribedGeometry(const TriangleMesh& mesh);
 NewGeometry DescribedGeometry(const Primitive& primitive);
 
-// Accessors with the values of morph targets; sparse where those of the primitive at `place` are and that is smaller.
-std::vector<std::vector<NamedAccessor>> TargetAccessors(const std::vector<MorphTarget>& targets, const Place& place,
-                                                        GltfDocument* document);
+// Accessors with the values of morph targets; sparse where that is smaller.
+std::vector<std::vector<NamedAccessor>> TargetAccessors(const std::vector<MorphTarget>& targets, GltfDocument* document);
 
 // All `places` show the same surface so far, by one set of accessors for each of `geometries`, and get the same new one.
 // What compressed it before goes.

@@ -37,6 +37,7 @@ struct Trial {
 // Measured over forecast, squared; of what is not yet measured 1.
 struct Correction {
   double distance = 1.0;
+  double poses = 1.0;
   std::vector<double> attributes;
 };
 
@@ -53,8 +54,8 @@ class FamilyRounder {
     correction_.attributes.assign(attributes_.size(), 1.0);
     for (const RoundedAttribute& attribute : attributes_) num_numbers_.push_back(attribute.num_numbers);
     if (!meter.status().ok()) return;
-    targets_ = meter.targets();
-    targets_.everywhere = everywhere;
+    targets_ = meter.TargetsWith(everywhere);
+    if (meter.skin() != nullptr) poses_ = meter.IndexOf(kPosesName);
     num_positions_ = static_cast<double>(meter.original().surface.positions.size());
     for (size_t a = 0; a < attributes_.size(); ++a) {
       indices_[a] = meter.IndexOf(attributes_[a].name);
@@ -64,6 +65,7 @@ class FamilyRounder {
     }
     if (own == nullptr) return;
     own_distance_ = own->distance / targets_.distance;
+    if (poses_.has_value()) own_poses_ = Ratio(*own, *poses_);
     for (size_t a = 0; a < attributes_.size(); ++a) {
       if (indices_[a].has_value()) own_attributes_[a] = Ratio(*own, *indices_[a]);
     }
@@ -99,7 +101,8 @@ class FamilyRounder {
   // The coarsest level at which an attribute is expected to meet its target on these positions; beyond kMostLevel: exact.
   std::optional<int> LevelFor(size_t a, const RoundedPositions& positions) {
     const RoundedAttribute& attribute = attributes_[a];
-    const double room = (1.0 - Square(own_attributes_[a])) / correction_.attributes[a] - Square(positions.slides[a] / attribute.target);
+    double room = (1.0 - Square(own_attributes_[a])) / correction_.attributes[a] - Square(positions.slides[a] / attribute.target);
+    if (!attribute.is_shown) room = std::min(room, PoseRoom() - Square(positions.distance / meter_.error()));
     if (!(room >= 0.0)) return std::nullopt;
     const auto meets = [&](int level) { return Square(forecast_.Rounded(a, level) / attribute.target) <= room; };
     int low = attribute.FirstLevel() - 1;  // too coarse
@@ -110,6 +113,10 @@ class FamilyRounder {
     }
     return high > kMostLevel ? high : attribute.AtOrAbove(high);
   }
+
+  // What rounding may add to the error of the poses, relative to the target and squared: positions, and weights relative to their
+  // own target.
+  double PoseRoom() const { return poses_.has_value() ? (1.0 - Square(own_poses_)) / correction_.poses : kInfinity; }
 
   // The smallest of what is expected to meet the targets; null where nothing is.
   StatusOr<Trial*> Smallest() {
@@ -158,7 +165,7 @@ class FamilyRounder {
 
   // The coarsest positions that are expected to be near enough.
   int FirstPositions() {
-    const double room = (1.0 - Square(own_distance_)) / correction_.distance;
+    const double room = std::min((1.0 - Square(own_distance_)) / correction_.distance, PoseRoom());
     const auto meets = [&](int level) { return Square(forecast_.Positions(level).distance / meter_.error()) <= room; };
     if (!(meter_.error() > 0.0) || !(room > 0.0)) return kMostLevel;
     int level = std::max(forecast_.StartLevel(meter_.error() * std::sqrt(room)), least_positions_);
@@ -257,6 +264,13 @@ class FamilyRounder {
     };
     correction_.distance =
         corrected(errors.distance / targets_.distance, own_distance_, positions.distance / targets_.distance);
+    if (poses_.has_value()) {
+      double expected = Square(positions.distance / targets_.distance);
+      for (size_t a = 0; a < attributes_.size(); ++a) {
+        if (!attributes_[a].is_shown) expected += Square(forecast_.Rounded(a, levels.attributes[a]) / attributes_[a].target);
+      }
+      correction_.poses = corrected(Ratio(errors, *poses_), own_poses_, std::sqrt(expected));
+    }
     for (size_t a = 0; a < attributes_.size(); ++a) {
       if (!indices_[a].has_value()) continue;
       const double expected = std::hypot(forecast_.Rounded(a, levels.attributes[a]), positions.slides[a]) / attributes_[a].target;
@@ -271,8 +285,10 @@ class FamilyRounder {
   RoundingForecast forecast_;
   // Errors that the primitives have before they are rounded, relative to the targets.
   double own_distance_ = 0.0;
+  double own_poses_ = 0.0;
   std::vector<double> own_attributes_;
   std::vector<std::optional<size_t>> indices_;  // of attributes_ in the meter's original
+  std::optional<size_t> poses_;  // in the meter's original; with a skin
   ErrorTargets targets_;
   double num_positions_ = 1.0;
   std::vector<double> num_numbers_;  // of each attribute

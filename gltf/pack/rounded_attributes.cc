@@ -64,13 +64,19 @@ int RoundedAttribute::AtOrAbove(int level) const {
 }
 
 Lattice RoundedAttribute::LatticeAt(const Part& part, int level) const {
-  return LatticeOfStep(part.box, range * std::exp2(-static_cast<float>(level) / kLevelsPerBit));
+  const float step = range * std::exp2(-static_cast<float>(level) / kLevelsPerBit);
+  if (is_shown) return LatticeOfStep(part.box, step);
+  Lattice from_zero = part.box;
+  from_zero.range += std::max(0.0f, *std::max_element(from_zero.origin.begin(), from_zero.origin.end()));
+  from_zero.origin = {};
+  return LatticeOfStep(from_zero, 1.0f / std::max(1.0f, std::round(1.0f / step)));  // 1 is a lattice point
 }
 
 AccessorData RoundedAttribute::RoundedAt(const Primitive& member, const Part& part, int level) const {
   const AccessorData& data = member.attributes[part.index].data;
   if (level > kMostLevel) return data;
-  return octahedral ? RoundOctahedral(data, BitsAtOrAbove(level)) : RoundToLattice(data, LatticeAt(part, level));
+  if (octahedral) return RoundOctahedral(data, BitsAtOrAbove(level));
+  return is_shown ? RoundToLattice(data, LatticeAt(part, level)) : RoundKeepingSums(data, LatticeAt(part, level));
 }
 
 std::vector<RoundedAttribute> RoundedAttributesOf(const std::vector<const Primitive*>& primitives,

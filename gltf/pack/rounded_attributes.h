@@ -29,7 +29,7 @@ struct RoundedAttribute {
   double scale = 1.0;       // from the attribute's unit to that of the target; directions are in degrees
   bool direction = false;
   bool octahedral = false;
-  bool is_shown = true;     // as a color or so on the surface; weights belong to their vertices
+  bool is_shown = true;     // as a color or so on the surface; weights belong to their vertices, and add up to 1
   std::string unit;         // "texels", "degrees" or empty
   float range = 0.0f;       // the largest of its parts
   std::vector<Part> parts;  // of ascending members; all are rounded to the same step

@@ -1,10 +1,13 @@
 #include "pack/simplified.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "pack/attributed_family.h"
+#include "pack/influence_slots.h"
+#include "pack/skin_transfer.h"
 #include "remesh/simplify_to_errors.h"
 
 namespace lacerta {
@@ -27,8 +30,31 @@ AccessorData ToTypeOf(const AccessorData& original, AccessorData floats) {
   return data;
 }
 
+// JOINTS_0 in the type of the original's where it holds all joints.
+Status AddSkin(const VertexSoup& soup, const Primitive& original, const SkinTransfer::ByVertex& by_vertex, Primitive* primitive) {
+  const auto poses = std::find_if(soup.attributes.begin(), soup.attributes.end(),
+                                  [](const VertexSoup::Attribute& attribute) { return attribute.name == kPosesName; });
+  if (poses == soup.attributes.end()) return InternalError("the simplified surface has lost its poses");
+  AccessorData joints = original.Find("JOINTS_0")->data;
+  joints.count = soup.positions.size();
+  joints.bytes.clear();
+  std::vector<float> weights;
+  for (size_t v = 0; v < soup.positions.size(); ++v) {
+    const auto found = by_vertex.find(SkinTransfer::KeyOf(soup.positions[v], &poses->values[v * poses->components], poses->components / 3));
+    if (found == by_vertex.end()) return InternalError("a vertex of the simplified surface has lost its joints");
+    for (size_t c = 0; c < joints.components; ++c) {
+      const Influence influence = c < found->second.size() ? found->second[c] : Influence{};
+      weights.push_back(influence.weight);
+      for (size_t byte = 0; byte < ComponentSize(joints.type); ++byte) joints.bytes.push_back(static_cast<uint8_t>(influence.joint >> (8 * byte)));
+    }
+  }
+  primitive->attributes.push_back({"JOINTS_0", std::move(joints)});
+  primitive->attributes.push_back({"WEIGHTS_0", MakeFloatAccessor(weights, 4)});
+  return Status();
+}
+
 StatusOr<Primitive> ToPrimitive(const VertexSoup& soup, const Primitive& original, size_t member,
-                                const TexelScale& scale) {
+                                const FamilyMeter& meter, const SkinTransfer::ByVertex& by_vertex) {
   if (soup.triangles.empty()) return Unsupported("would have no triangle left");
   Primitive primitive;
   primitive.num_vertices = soup.positions.size();
@@ -38,7 +64,8 @@ StatusOr<Primitive> ToPrimitive(const VertexSoup& soup, const Primitive& origina
       primitive.attributes.push_back({attribute.name, MakeFloatAccessor(soup.positions)});
       continue;
     }
-    const std::string name = SoupName(attribute, member, scale);
+    if (meter.skin() != nullptr && IsSkinAttribute(attribute.name)) continue;
+    const std::string name = SoupName(attribute, member, meter.texels_per_unit());
     const auto found =
         std::find_if(soup.attributes.begin(), soup.attributes.end(), [&](const VertexSoup::Attribute& candidate) {
           return candidate.name == name && candidate.components == attribute.data.components;
@@ -47,41 +74,82 @@ StatusOr<Primitive> ToPrimitive(const VertexSoup& soup, const Primitive& origina
     primitive.attributes.push_back(
         {attribute.name, ToTypeOf(attribute.data, MakeFloatAccessor(found->values, found->components))});
   }
+  if (meter.skin() != nullptr) LACERTA_RETURN_IF_ERROR(AddSkin(soup, original, by_vertex, &primitive));
   return primitive;
 }
 
-StatusOr<std::vector<Primitive>> Split(const AttributedMesh& mesh, const FamilyMeter& meter) {
+StatusOr<std::vector<Primitive>> Split(const AttributedMesh& mesh, const FamilyMeter& meter, const SkinTransfer::ByVertex& by_vertex) {
   const std::vector<const Primitive*>& originals = meter.primitives();
   const std::vector<VertexSoup> soups = SplitIntoSoups(mesh, static_cast<uint32_t>(originals.size()));
   std::vector<Primitive> primitives;
   for (size_t m = 0; m < soups.size(); ++m) {
-    LACERTA_ASSIGN_OR_RETURN(Primitive primitive, ToPrimitive(soups[m], *originals[m], m, meter.texels_per_unit()));
+    LACERTA_ASSIGN_OR_RETURN(Primitive primitive, ToPrimitive(soups[m], *originals[m], m, meter, by_vertex));
     primitives.push_back(std::move(primitive));
   }
+  std::vector<Primitive*> pointers;
+  for (Primitive& primitive : primitives) pointers.push_back(&primitive);
+  ArrangeInfluences(std::move(pointers));
   return primitives;
+}
+
+// The search compares poses point by point, which tells more than how far the surfaces are apart: how much more is measured, and
+// the search run again with the bound that follows.
+StatusOr<SimplifiedFamily> SimplifyInPoses(const FamilyMeter& meter, ErrorTargets targets) {
+  constexpr double kLeastGain = 1.05, kMostGain = 2.5, kMargin = 0.97;
+  constexpr int kMostTries = 2;
+  LACERTA_ASSIGN_OR_RETURN(const SkinTransfer transfer, SkinTransfer::Create(meter));
+  SimplifyToErrorsOptions options;
+  options.finish = [&](AttributedMesh* mesh) { transfer.Transfer(mesh); };
+  const size_t poses = *meter.IndexOf(kPosesName);
+  const double wanted = targets.attributes[poses];
+  SimplifiedFamily best;
+  for (int i = 0; i < kMostTries; ++i) {
+    LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets, options));
+    if (!simplified.meets_targets) break;
+    const SkinTransfer::ByVertex by_vertex = transfer.Transfer(&simplified.mesh);
+    LACERTA_ASSIGN_OR_RETURN(std::vector<Primitive> primitives, Split(simplified.mesh, meter, by_vertex));
+    LACERTA_ASSIGN_OR_RETURN(const double worst, meter.WorstPose(PointersTo(primitives)));
+    AttributeError& error = simplified.errors.attributes[poses];
+    const double gain = std::clamp(kMargin * wanted / worst, 1.0 / kMostGain, kMostGain);
+    const bool is_limiting = error.rms > targets.attributes[poses] / kLeastGain;
+    error.rms = error.rms_99 = worst;
+    if (worst <= wanted) {
+      best = {std::move(primitives), std::move(simplified.errors)};
+      if (gain < kLeastGain || !is_limiting) break;
+    } else if (!best.primitives.empty()) {
+      break;
+    }
+    targets.attributes[poses] *= gain;
+    targets.everywhere[poses] *= gain;
+  }
+  if (best.primitives.empty()) return Unsupported("no simplified surface is close enough in all poses of its skin");
+  return best;
 }
 
 }  // namespace
 
-StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vector<double>& everywhere) {
+StatusOr<SimplifiedFamily> SimplifyPrimitives(const FamilyMeter& meter, const std::vector<double>& everywhere) {
   constexpr double kShare = 0.85;  // of every target to simplification: what rounding adds comes on top in squares
   LACERTA_RETURN_IF_ERROR(meter.status());
   if (meter.leaves_out()) {
     // Names the attribute.
-    return ToAttributedMesh(meter.primitives(), meter.texels_per_unit(), OtherAttributes::kRefuse).status();
+    return ToAttributedMesh(meter.primitives(), meter.texels_per_unit(), OtherAttributes::kRefuse, meter.skin()).status();
   }
-  ErrorTargets targets = meter.targets();
-  targets.everywhere = everywhere;
+  ErrorTargets targets = meter.TargetsWith(everywhere);
   targets.distance *= kShare;
   targets.turned *= kShare;
   for (double& target : targets.attributes) target *= kShare;
   for (double& target : targets.everywhere) target *= kShare;
-  LACERTA_ASSIGN_OR_RETURN(const SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets));
+  if (meter.skin() != nullptr) return SimplifyInPoses(meter, std::move(targets));
+  LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets));
   if (!simplified.meets_targets) return Unsupported("no simplified surface is close enough");
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<Primitive> primitives, Split(simplified.mesh, meter));
-  std::vector<const Primitive*> pointers;
-  for (const Primitive& primitive : primitives) pointers.push_back(&primitive);
-  return RoundFamily(pointers, meter, &simplified.errors, everywhere);
+  LACERTA_ASSIGN_OR_RETURN(std::vector<Primitive> primitives, Split(simplified.mesh, meter, {}));
+  return SimplifiedFamily{std::move(primitives), std::move(simplified.errors)};
+}
+
+StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vector<double>& everywhere) {
+  LACERTA_ASSIGN_OR_RETURN(const SimplifiedFamily simplified, SimplifyPrimitives(meter, everywhere));
+  return RoundFamily(PointersTo(simplified.primitives), meter, &simplified.errors, everywhere);
 }
 
 }  // namespace lacerta

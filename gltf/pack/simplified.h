@@ -10,10 +10,18 @@
 
 namespace lacerta {
 
-// Simplifies the meter's primitives (one mesh or meshes that touch) as one surface, so that their borders stay joined,
-// and rounds what is left. The errors of what is decoded, measured on the surface, meet the meter's targets and
+struct SimplifiedFamily {
+  std::vector<Primitive> primitives;  // in the order of the meter's
+  SurfaceErrors errors;               // against the meter's, as it measures
+};
+
+// Simplifies the meter's primitives (one mesh or meshes that touch) as one surface, so that their borders stay joined. Leaves room in
+// the targets for rounding. Fails as SimplifyFamily.
+StatusOr<SimplifiedFamily> SimplifyPrimitives(const FamilyMeter& meter, const std::vector<double>& everywhere = {});
+
+// The same, and rounds what is left. The errors of what is decoded, measured on the surface, meet the meter's targets and
 // `everywhere` (as in ErrorTargets, for the attributes of FamilyMeter::original). Fails with kUnsupported where
-// attributes cannot be interpolated (joints, application attributes) or the errors are not met.
+// attributes cannot be interpolated (joints without a skin, application attributes) or the errors are not met.
 StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vector<double>& everywhere = {});
 
 }  // namespace lacerta

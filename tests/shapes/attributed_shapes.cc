@@ -1,5 +1,6 @@
 #include "shapes/attributed_shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -50,6 +51,21 @@ VertexSoup Cylinder(int around, int up) {
   }
   AddSquares(around, up, 0, &soup);
   return soup;
+}
+
+SkinnedSoup SkinnedCylinder(int around, int up) {
+  SkinnedSoup result{Cylinder(around, up), {}, {}};
+  constexpr float kBlend = 0.2f * 2 * kPi;
+  const auto after = [&](float z, float joint) {  // 0 below it, 1 above
+    const float t = std::min(std::max((z - joint * 2 * kPi / 3) / kBlend + 0.5f, 0.0f), 1.0f);
+    return t * t * (3 - 2 * t);
+  };
+  for (const Vec3f& p : result.soup.positions) {
+    const float second = after(p.z, 1), third = after(p.z, 2);
+    result.joints.insert(result.joints.end(), {0, 1, 2, 0});
+    result.weights.insert(result.weights.end(), {1 - second, second * (1 - third), second * third, 0});
+  }
+  return result;
 }
 
 VertexSoup TexturedGrid(int nx, int ny, float height) {

@@ -12,6 +12,15 @@ namespace lacerta::shapes {
 // (angle, height) / 2 pi, with one seam at angle 0, and NORMAL without one. (around + 1) (up + 1) vertices.
 VertexSoup Cylinder(int around, int up);
 
+// Cylinder with a skin of three joints at the heights 0, 2 pi / 3 and 4 pi / 3, each the parent of the next. A vertex is moved by the
+// joint below; over a fifth of the height around the upper two the weight goes over smoothly from one joint to the next.
+struct SkinnedSoup {
+  VertexSoup soup;
+  std::vector<uint8_t> joints;  // #V x 4
+  std::vector<float> weights;   // #V x 4
+};
+SkinnedSoup SkinnedCylinder(int around, int up);
+
 // The plane z = height * sin(pi x) * sin(pi y) over the unit square in nx x ny squares, with TEXCOORD_0 = (x, y) and NORMAL.
 VertexSoup TexturedGrid(int nx, int ny, float height = 0.0f);
 

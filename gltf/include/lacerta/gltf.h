@@ -44,7 +44,8 @@ struct PackOptions {
   // No mesh gets worse than 40 dB of its own diagonal for an error that asks for more.
   EncodeOptions encode;
   AttributeTargets attributes;
-  // Whether surfaces with attributes may be simplified where that is smaller and the errors are met.
+  // Whether surfaces with attributes may be simplified where that is smaller and the errors are met: of skinned ones in poses of
+  // the animations and of turned joints, too, with morph targets at weight 1 of each.
   bool simplify = true;
   Fallback fallback = Fallback::kDraco;
   std::string folder;  // where the external buffers of a .gltf are

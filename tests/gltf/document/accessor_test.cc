@@ -80,6 +80,21 @@ TEST(Accessor, RangesOfComponents) {
   EXPECT_TRUE(ComponentRanges(MakeFloatAccessor({}, 2)).empty());
 }
 
+TEST(Accessor, ReadsMatricesAsMatricesAlone) {
+  GltfDocument document = Floats(32, {{"byteOffset", 0}}, {{"byteOffset", 0}, {"byteLength", 128}});
+  Json& accessor = document.json["accessors"][0];
+  EXPECT_THAT(ReadMatrices(document, 0).status().message(), HasSubstr("4 x 4 matrices"));
+  accessor["type"] = "MAT4";
+  accessor["count"] = 2;
+  const auto data = ReadMatrices(document, 0);
+  ASSERT_TRUE(data.ok()) << data.status().message();
+  EXPECT_EQ(data.value().components, 16u);
+  EXPECT_EQ(data.value().Float(1, 3), 19.0f);
+  EXPECT_EQ(ReadAccessor(document, 0).status().code(), StatusCode::kUnsupported);
+  accessor["count"] = 3;
+  EXPECT_EQ(ReadMatrices(document, 0).status().code(), StatusCode::kInvalidData);
+}
+
 TEST(Accessor, RefusesWhatIsNotThere) {
   EXPECT_THAT(MessageOf(Floats(6, {{"count", 3}})), AllOf(HasSubstr("accessor 0"), HasSubstr("3 elements")));
   EXPECT_THAT(MessageOf(Floats(6, {{"count", 18446744073709551615u}})), HasSubstr("accessor 0"));

@@ -47,5 +47,24 @@ TEST(LatticeTest, StepsOfAnyRangeTakeALegalNumberOfBits) {
   EXPECT_EQ(LatticeOfStep(Over(0.0f, 1.0f, 1), 0.25f).bits, 3);  // 5 points
 }
 
+TEST(LatticeTest, WeightsKeepTheirSum) {
+  const Lattice lattice = Over(0.0f, 1.0f, 4);  // steps of 1/15
+  const std::vector<float> weights = {0.5f, 0.5f, 0, 0, 0.1f, 0.1f, 0.1f, 0.7f, 0.24f, 0.23f, 0.27f, 0.26f, 1, 0, 0, 0};
+  const AccessorData data = MakeFloatAccessor(weights, 4), rounded = RoundKeepingSums(data, lattice);
+  for (uint64_t i = 0; i < data.count; ++i) {
+    float sum = 0.0f;
+    for (uint32_t c = 0; c < 4; ++c) {
+      sum += rounded.Float(i, c);
+      EXPECT_NEAR(rounded.Float(i, c), data.Float(i, c), 1.0f / 15) << i;
+    }
+    EXPECT_NEAR(sum, 1.0f, 1e-6f) << i;
+  }
+  EXPECT_NEAR(rounded.Float(0, 0) + rounded.Float(0, 1), 1.0f, 1e-6f);  // one up, one down
+  EXPECT_EQ(RoundKeepingSums(rounded, lattice).bytes, rounded.bytes);
+  for (const float value : {kMost, kInfinity, std::nanf("")}) {
+    EXPECT_EQ(RoundKeepingSums(MakeFloatAccessor({value, 0.5f}, 2), lattice).count, 1u);
+  }
+}
+
 }  // namespace
 }  // namespace lacerta

@@ -177,7 +177,9 @@ TEST(Pack, ImagesAnimationsAndMorphTargetsStayByteForByte) {
       Json::array({{{"mimeType", "image/png"},
                     {"bufferView", AddBufferView(AddBuffer(image, &document), 0, image.size(), &document)}}});
   const Bytes glb = builder.Glb();
-  const auto packed = PackGltf(glb, Options(Fallback::kDraco));
+  PackOptions options = Options(Fallback::kDraco);
+  options.simplify = false;  // morph targets would be simplified with their surface
+  const auto packed = PackGltf(glb, options);
   ASSERT_TRUE(packed.ok()) << packed.status().message();
   EXPECT_EQ(packed.value().report.primitives[0].storage, PrimitiveStorage::kDraco) << packed.value().report.primitives[0].reason;
   const GltfDocument before = ParseGltf(glb, "").value();

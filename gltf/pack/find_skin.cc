@@ -1,0 +1,195 @@
+#include "pack/find_skin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "lacerta/surface_distance.h"
+
+namespace lacerta {
+namespace {
+
+constexpr size_t kMostPoses = 6;
+
+// The node shows a mesh of the sources by this skin. All of them have to agree.
+StatusOr<uint64_t> SkinIndex(const GltfDocument& document, const std::vector<const Source*>& sources) {
+  std::set<uint64_t> meshes;
+  for (const Source* source : sources) {
+    for (const Place& place : source->places) meshes.insert(place.mesh);
+  }
+  std::optional<uint64_t> skin;
+  for (uint64_t n = 0; n < ArraySize(document.json, "nodes"); ++n) {
+    const Json& node = *FindElement(document.json, "nodes", n);
+    const std::optional<uint64_t> mesh = AsIndex(Find(node, "mesh"));
+    if (!mesh.has_value() || meshes.count(*mesh) == 0) continue;
+    const std::optional<uint64_t> own = AsIndex(Find(node, "skin"));
+    if (!own.has_value()) return Unsupported("has joints, but node " + std::to_string(n) + " shows it without a skin");
+    if (skin.has_value() && *skin != *own)
+      return Unsupported("is moved by several skins, or touches what another one moves");
+    skin = own;
+  }
+  if (!skin.has_value()) return Unsupported("has joints, but no node shows it with a skin");
+  return *skin;
+}
+
+bool IsFinite(const Transform& m) {
+  constexpr double kMost = 1e15;
+  return std::all_of(m.begin(), m.end(), [](double x) { return std::fabs(x) < kMost; });
+}
+
+StatusOr<std::vector<Transform>> ReadInverseBinds(const GltfDocument& document, const Json& skin, size_t num_joints) {
+  std::vector<Transform> result(num_joints, kIdentity);
+  const Json* reference = Find(skin, "inverseBindMatrices");
+  if (reference == nullptr) return result;
+  const StatusOr<AccessorData> data = ReadMatrices(document, AsIndex(reference).value_or(~uint64_t{0}));
+  if (!data.ok() || data.value().count < num_joints)
+    return Unsupported("its skin's inverse bind matrices cannot be read");
+  constexpr uint32_t kRows = 4;
+  for (size_t j = 0; j < num_joints; ++j) {
+    for (uint32_t i = 0; i < result[j].size(); ++i) {
+      result[j][i] = static_cast<double>(data.value().Float(j, i / 3 * kRows + i % 3));
+    }
+  }
+  return result;
+}
+
+// From mesh units to those of the world, over the joints: the median.
+double ScaleOf(const std::vector<Transform>& joints) {
+  std::vector<double> scales;
+  for (const Transform& m : joints) scales.push_back(std::cbrt(std::fabs(Determinant(m))));
+  std::nth_element(scales.begin(), scales.begin() + static_cast<std::ptrdiff_t>(scales.size() / 2), scales.end());
+  return scales[scales.size() / 2];
+}
+
+// Some vertices of a family.
+struct Sample {
+  std::vector<Vec3d> positions;
+  std::vector<Influences> influences;
+};
+
+StatusOr<Sample> TakeSample(const std::vector<const Source*>& sources, size_t num_joints) {
+  constexpr size_t kPoints = 256;  // of each source
+  Sample sample;
+  for (const Source* source : sources) {
+    LACERTA_ASSIGN_OR_RETURN(const VertexInfluences influences, ReadInfluences(*source->primitive, num_joints));
+    const TriangleMesh surface = Surface(*source->primitive);
+    const size_t stride = std::max<size_t>(1, surface.positions.size() / kPoints);
+    for (size_t v = 0; v < surface.positions.size(); v += stride) {
+      sample.positions.push_back(Vec3Cast<double>(surface.positions[v]));
+      const Span<const Influence> own = influences.Of(v);
+      sample.influences.emplace_back(own.begin(), own.end());
+    }
+  }
+  return sample;
+}
+
+// What moving and turning the whole does not change: distances between some of the points.
+std::vector<double> ShapeOf(const std::vector<Vec3d>& points) {
+  std::vector<double> distances;
+  for (const size_t step : {size_t{1}, points.size() / 3, points.size() / 2}) {
+    for (size_t i = 0; i < points.size(); ++i)
+      distances.push_back(Norm(points[i] - points[(i + step) % points.size()]));
+  }
+  return distances;
+}
+
+double Length(const std::vector<double>& v) {
+  double sum = 0.0;
+  for (const double x : v) sum += x * x;
+  return std::sqrt(sum);
+}
+
+double Difference(std::vector<double> a, const std::vector<double>& b) {
+  for (size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
+  return Length(a);
+}
+
+// Leaves those poses that are farthest from the others and from the mesh as it is; none that blows up or shrinks it.
+Status KeepMostDifferent(const Sample& sample, Skin* skin) {
+  constexpr double kMostStretch = 10.0;
+  const std::vector<double> as_it_is = ShapeOf(sample.positions);
+  std::vector<std::vector<double>> shapes;
+  std::vector<double> nearest;  // of each pose to what is chosen
+  for (size_t pose = 0; pose < skin->poses.size(); ++pose) {
+    std::vector<Vec3d> posed;
+    for (size_t i = 0; i < sample.positions.size(); ++i)
+      posed.push_back(skin->Posed(pose, sample.positions[i], sample.influences[i]));
+    shapes.push_back(ShapeOf(posed));
+    const double stretch = Length(shapes.back()) / Length(as_it_is);
+    nearest.push_back(stretch < kMostStretch && stretch > 1.0 / kMostStretch ? Difference(shapes.back(), as_it_is)
+                                                                             : -1.0);
+  }
+  std::vector<std::vector<Transform>> chosen;
+  while (chosen.size() < kMostPoses) {
+    const auto farthest = std::max_element(nearest.begin(), nearest.end());
+    if (!(*farthest >= 0.0) || (*farthest == 0.0 && !chosen.empty())) break;
+    const auto index = static_cast<size_t>(farthest - nearest.begin());
+    chosen.push_back(skin->poses[index]);
+    for (size_t i = 0; i < shapes.size(); ++i) nearest[i] = std::min(nearest[i], Difference(shapes[i], shapes[index]));
+  }
+  if (chosen.empty()) return Unsupported("its skin stretches or shrinks it tenfold in every pose");
+  skin->poses = std::move(chosen);
+  return Status();
+}
+
+// Enlarges poses that are smaller than the surface is, so that an error is as large a share of them as of the surface.
+Status ScaleSmallPoses(const std::vector<const Source*>& sources, Skin* skin) {
+  std::vector<const Primitive*> primitives;
+  TriangleMesh all;
+  for (const Source* source : sources) {
+    primitives.push_back(&*source->primitive);
+    const TriangleMesh surface = Surface(*source->primitive);
+    const auto first = static_cast<uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), surface.positions.begin(), surface.positions.end());
+    for (const Triangle& t : surface.triangles) all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  const double diagonal = BoundingBoxDiagonal(all);
+  for (size_t pose = 0; pose < skin->poses.size(); ++pose) {
+    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh posed, PosedSurface(primitives, *skin, pose));
+    const double scale = diagonal / BoundingBoxDiagonal(posed);
+    if (!(scale > 1.0) || !std::isfinite(scale)) continue;
+    for (Transform& m : skin->poses[pose]) {
+      for (double& x : m) x *= scale;
+    }
+  }
+  return Status();
+}
+
+}  // namespace
+
+StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const Source*>& sources,
+                        const std::vector<ScenePose>& poses) {
+  LACERTA_ASSIGN_OR_RETURN(const uint64_t index, SkinIndex(document, sources));
+  const Json* json = FindElement(document.json, "skins", index);
+  Skin skin;
+  skin.num_joints = json == nullptr ? 0 : static_cast<size_t>(ArraySize(*json, "joints"));
+  if (skin.num_joints == 0) return Unsupported("its skin has no joints");
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<Transform> inverse_binds,
+                           ReadInverseBinds(document, *json, skin.num_joints));
+  double scale = 0.0;  // of the first pose, which is the one at rest
+  for (const ScenePose& pose : poses) {
+    std::vector<Transform> joints;
+    for (size_t j = 0; j < skin.num_joints; ++j) {
+      const uint64_t node = AsIndex(FindElement(*json, "joints", j)).value_or(~uint64_t{0});
+      if (node >= pose.size()) return Unsupported("its skin refers to a node that does not exist");
+      joints.push_back(Multiply(pose[static_cast<size_t>(node)], inverse_binds[j]));
+    }
+    if (!std::all_of(joints.begin(), joints.end(), IsFinite)) continue;
+    if (!(scale > 0.0)) scale = ScaleOf(joints);
+    if (!(scale > 0.0)) return Unsupported("its skin shrinks it to nothing");
+    for (Transform& m : joints) {
+      for (double& x : m) x /= scale;
+    }
+    skin.poses.push_back(std::move(joints));
+  }
+  if (skin.poses.empty()) return Unsupported("its skin's matrices are not finite");
+  LACERTA_ASSIGN_OR_RETURN(const Sample sample, TakeSample(sources, skin.num_joints));
+  LACERTA_RETURN_IF_ERROR(KeepMostDifferent(sample, &skin));
+  LACERTA_RETURN_IF_ERROR(ScaleSmallPoses(sources, &skin));
+  return skin;
+}
+
+}  // namespace lacerta

@@ -1,0 +1,22 @@
+// Which skin moves a family of primitives, and in which poses that is looked at.
+#ifndef LACERTA_PACK_FIND_SKIN_H_
+#define LACERTA_PACK_FIND_SKIN_H_
+
+#include <vector>
+
+#include "document/gltf_document.h"
+#include "document/scene_poses.h"
+#include "lacerta/status.h"
+#include "pack/skin.h"
+#include "pack/source.h"
+
+namespace lacerta {
+
+// The skin of sources that belong together, with those of the scene's poses in which they differ most in shape. Fails
+// with kUnsupported, and the reason, where not all of them have one and the same, or it cannot be used.
+StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const Source*>& sources,
+                        const std::vector<ScenePose>& poses);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_PACK_FIND_SKIN_H_

@@ -1,0 +1,76 @@
+#include "pack/simplified_morphs.h"
+
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "pack/simplified.h"
+
+namespace lacerta {
+namespace {
+
+// Numbers of the plain meter's attributes for those of the one with targets.
+std::vector<double> BoundsFor(const FamilyMeter& plain, const FamilyMeter& morphed, const std::vector<double>& bounds) {
+  if (bounds.empty()) return {};
+  std::vector<double> result;
+  for (const MeshAttribute& attribute : morphed.original().attributes) {
+    const std::optional<size_t> index = plain.IndexOf(attribute.name);
+    result.push_back(index.has_value() ? bounds[*index] : std::numeric_limits<double>::infinity());
+  }
+  return result;
+}
+
+SurfaceErrors ErrorsOf(const FamilyMeter& plain, const FamilyMeter& morphed, SurfaceErrors errors) {
+  std::vector<AttributeError> kept(plain.original().attributes.size());
+  for (size_t a = 0; a < errors.attributes.size(); ++a) {
+    const std::optional<size_t> index = plain.IndexOf(morphed.original().attributes[a].name);
+    if (index.has_value()) kept[*index] = errors.attributes[a];
+  }
+  errors.attributes = std::move(kept);
+  return errors;
+}
+
+}  // namespace
+
+StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
+                                              const std::vector<const std::vector<MorphTarget>*>& targets,
+                                              uint64_t texel_side, const std::vector<double>& everywhere) {
+  constexpr double kNothing = 0.01;  // of the error: offsets below are none
+  LACERTA_RETURN_IF_ERROR(meter.status());
+  std::vector<Primitive> with_targets;
+  std::vector<MorphedPrimitive> originals;
+  for (size_t m = 0; m < targets.size(); ++m) {
+    LACERTA_ASSIGN_OR_RETURN(Primitive primitive, WithTargets(*meter.primitives()[m], *targets[m]));
+    with_targets.push_back(std::move(primitive));
+    originals.push_back({meter.primitives()[m], targets[m]});
+  }
+  const FamilyMeter morphed(PointersTo(with_targets), meter.error(), meter.attribute_targets(), texel_side,
+                            meter.texels_per_unit(), meter.skin());
+  LACERTA_ASSIGN_OR_RETURN(SimplifiedFamily simplified,
+                           SimplifyPrimitives(morphed, BoundsFor(meter, morphed, everywhere)));
+  std::vector<std::vector<MorphTarget>> simplified_targets;
+  for (size_t m = 0; m < targets.size(); ++m) {
+    simplified_targets.push_back(TakeTargets(*targets[m], kNothing * meter.error(), &simplified.primitives[m]));
+  }
+  MorphedFamily result;
+  const auto takes_targets = [&](const RoundedFamily& rounded) {
+    result.targets.clear();
+    std::vector<MorphedPrimitive> stored;
+    for (size_t m = 0; m < targets.size(); ++m) {
+      auto reordered = ReorderTargets({&simplified.primitives[m], &simplified_targets[m]}, rounded.precisions[m],
+                                      rounded.members[m].decoded);
+      if (!reordered.has_value()) return false;
+      result.targets.push_back(std::move(*reordered));
+    }
+    for (size_t m = 0; m < targets.size(); ++m) stored.push_back({&rounded.members[m].decoded, &result.targets[m]});
+    const StatusOr<double> worst = WorstMorph(originals, stored);
+    return worst.ok() && worst.value() <= meter.error();
+  };
+  const SurfaceErrors errors = ErrorsOf(meter, morphed, std::move(simplified.errors));
+  LACERTA_ASSIGN_OR_RETURN(result.rounded,
+                           RoundFamily(PointersTo(simplified.primitives), meter, &errors, everywhere, takes_targets));
+  if (!takes_targets(result.rounded)) return InternalError("the morph targets do not follow what was measured");
+  return result;
+}
+
+}  // namespace lacerta

@@ -1,0 +1,162 @@
+// Skinned meshes through the whole packer: what a viewer shows of them in poses stays within the error.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <tuple>
+
+#include "gltf/skinned_asset.h"
+#include "lacerta/file_io.h"
+#include "lacerta/surface_distance.h"
+
+namespace lacerta {
+namespace {
+
+using testing::PosedAt;
+using testing::SkinnedCylinderAsset;
+
+double PosedPsnr(const Bytes& original, const Bytes& unpacked, size_t animation, double time) {
+  const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(PosedAt(original, animation, time)).value();
+  return Psnr(meter.Measure(PosedAt(unpacked, animation, time)).value().Rms(), meter.diagonal());
+}
+
+// The least over times of which some are, others are not among those that the packer looks at.
+double WorstPsnr(const Bytes& original, const Bytes& unpacked) {
+  const std::vector<Animation> animations = ReadAnimations(ParseGltf(original, "").value());
+  double worst = PosedPsnr(original, unpacked, animations.size(), 0.0);
+  for (size_t a = 0; a < animations.size(); ++a) {
+    for (const double share : {0.0, 0.29, 0.5, 0.83, 1.0}) {
+      const double time = animations[a].begin + share * (animations[a].end - animations[a].begin);
+      worst = std::min(worst, PosedPsnr(original, unpacked, a, time));
+    }
+  }
+  return worst;
+}
+
+PackResult Pack(const Bytes& asset, bool simplify = true) {
+  PackOptions options;
+  options.simplify = simplify;
+  return PackGltf(asset, options).value();
+}
+
+Bytes Unpacked(const PackResult& packed) { return UnpackGltf(packed.glb, {}).value().glb; }
+
+Bytes BentCylinder() { return SkinnedCylinderAsset(shapes::SkinnedCylinder(48, 104), 60.0); }
+
+const PackResult& PackedBentCylinder() {
+  static const PackResult* const kResult = new PackResult(Pack(BentCylinder()));
+  return *kResult;
+}
+
+TEST(Skin, BentCylinderIsSimplifiedAndHoldsItsErrorInPoses) {
+  const Bytes asset = BentCylinder();
+  const PackResult all = Pack(asset, false);
+  const PackResult& simplified = PackedBentCylinder();
+  const uint64_t bytes_of_all = all.report.primitives[0].bytes_after,
+                 bytes = simplified.report.primitives[0].bytes_after;
+  EXPECT_GT(10 * bytes_of_all, 15 * bytes) << bytes_of_all << " / " << bytes;
+  EXPECT_LT(bytes_of_all, 3 * bytes) << bytes_of_all << " / " << bytes;
+  EXPECT_GT(WorstPsnr(asset, Unpacked(all)), 69.9);
+  EXPECT_GT(WorstPsnr(asset, Unpacked(simplified)), 69.9);
+  EXPECT_LT(WorstPsnr(asset, Unpacked(simplified)), 73.0);
+  EXPECT_NE(simplified.report.primitives[0].reason.find("simplified from 9984"), std::string::npos);
+}
+
+TEST(Skin, WithoutAnimationItIsLookedAtInTurnedPoses) {
+  const shapes::SkinnedSoup cylinder = shapes::SkinnedCylinder(48, 104);
+  const Bytes still = SkinnedCylinderAsset(cylinder, 0.0), bent = SkinnedCylinderAsset(cylinder, 30.0);
+  const Bytes unpacked = Unpacked(Pack(still));
+  // The same nodes and skin with an animation that was not in the file.
+  GltfDocument document = ParseGltf(unpacked, "").value();
+  const GltfDocument animated = ParseGltf(bent, "").value();
+  Json animations = animated.json["animations"];
+  for (Json& sampler : animations[0]["samplers"]) {
+    for (const char* key : {"input", "output"}) {
+      const AccessorData data = ReadAccessor(animated, sampler[key].get<uint64_t>()).value();
+      sampler[key] = AddAccessor(MakeAccessor(data, AccessorUse::kAttribute, false, &document), &document);
+    }
+  }
+  document.json["animations"] = animations;
+  ASSERT_TRUE(MergeBuffers(&document).ok());
+  EXPECT_GT(WorstPsnr(bent, FormatGlb(document)), 69.5);
+  const Primitive primitive = ReadPrimitive(document, PrimitiveAt(document, {0, 0}), {}).value();
+  EXPECT_LT(primitive.triangles.size(), 9984u / 4);
+  EXPECT_GT(primitive.triangles.size(), 9984u / 16);
+}
+
+TEST(Skin, WeightsAddUpToOne) {
+  const Bytes unpacked = Unpacked(PackedBentCylinder());
+  const GltfDocument document = ParseGltf(unpacked, "").value();
+  const Primitive primitive = ReadPrimitive(document, PrimitiveAt(document, {0, 0}), {}).value();
+  EXPECT_EQ(primitive.Find("JOINTS_0")->data.type, ComponentType::kUint8);
+  EXPECT_EQ(primitive.Find("JOINTS_1"), nullptr);
+  const AccessorData &joints = primitive.Find("JOINTS_0")->data, &weights = primitive.Find("WEIGHTS_0")->data;
+  uint64_t blended = 0;
+  for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
+    float sum = 0.0f;
+    for (uint32_t c = 0; c < 4; ++c) {
+      sum += weights.Float(v, c);
+      EXPECT_LT(joints.Uint(v, c), 3u);
+      blended += weights.Float(v, c) > 0.0f && weights.Float(v, c) < 1.0f;
+    }
+    EXPECT_NEAR(sum, 1.0f, 1e-6f) << v;
+  }
+  EXPECT_GT(blended, 100u);
+}
+
+TEST(Skin, PrimitivesStayJoinedInPoses) {
+  const Bytes asset = SkinnedCylinderAsset(shapes::SkinnedCylinder(48, 60), 60.0, true);
+  const PackResult packed = Pack(asset);
+  EXPECT_NE(packed.report.primitives[0].reason.find("simplified from 2880"), std::string::npos)
+      << packed.report.primitives[0].reason;
+  const Bytes unpacked = Unpacked(packed);
+  const auto points = [&](const Bytes& plain, uint64_t primitive, double time) {
+    std::set<std::tuple<float, float, float>> result;
+    const TriangleMesh mesh = PosedAt(plain, 0, time, primitive);
+    for (const Triangle& t : mesh.triangles) {
+      for (const uint32_t v : t) result.insert({mesh.positions[v].x, mesh.positions[v].y, mesh.positions[v].z});
+    }
+    return result;
+  };
+  const auto num_shared = [&](const Bytes& plain, double time) {
+    const auto a = points(plain, 0, time), b = points(plain, 1, time);
+    return std::count_if(a.begin(), a.end(), [&](const auto& p) { return b.count(p) > 0; });
+  };
+  EXPECT_GT(num_shared(unpacked, 0.0), 10);
+  EXPECT_EQ(num_shared(unpacked, 0.0), num_shared(unpacked, 0.7));  // bit by bit
+}
+
+TEST(Skin, WhatCannotBePosedIsNotSimplified) {
+  const Bytes asset = SkinnedCylinderAsset(shapes::SkinnedCylinder(24, 52), 60.0);
+  GltfDocument document = ParseGltf(asset, "").value();
+  document.json["nodes"][0].erase("skin");
+  const auto pack = [](const GltfDocument& changed) {
+    return PackGltf(FormatGlb(changed), {}).value().report.primitives[0];
+  };
+  EXPECT_NE(pack(document).reason.find("node 0 shows it without a skin"), std::string::npos);
+  document = ParseGltf(asset, "").value();
+  document.json["skins"].push_back(document.json["skins"][0]);
+  document.json["nodes"].push_back({{"mesh", 0}, {"skin", 1}});
+  EXPECT_NE(pack(document).reason.find("several skins"), std::string::npos);
+  document = ParseGltf(asset, "").value();
+  document.json["skins"][0]["joints"] = {1, 2};
+  EXPECT_NE(pack(document).reason.find("joint 2, which its skin has not got"), std::string::npos);
+  EXPECT_EQ(pack(document).storage, PrimitiveStorage::kDraco);
+}
+
+class AnimatedAsset : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(AnimatedAsset, HoldsItsErrorInPoses) {
+  const std::string path = std::string(LACERTA_TEST_DATA_DIR) + "/" + GetParam() + ".glb";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const Bytes asset = ReadFile(path).value();
+  const double worst = WorstPsnr(asset, Unpacked(Pack(asset)));
+  EXPECT_GT(worst, 69.9);
+  EXPECT_LT(worst, 72.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(DataSet, AnimatedAsset, ::testing::Values("CesiumMan", "Fox"));
+
+}  // namespace
+}  // namespace lacerta
