@@ -286,7 +286,8 @@ Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
   int count = 0;
   for (int j = 0; j < k; ++j) {
     if (fan.curve[0] >= 0 && j != fan.curve[0] && j != fan.curve[1]) continue;  // along the curve only
-    least[count++] = {LeastCost(v, fan.ring[j]), j};
+    const double cost = LeastCost(v, fan.ring[j]);
+    if (std::isfinite(cost)) least[count++] = {cost, j};
   }
   std::sort(least.begin(), least.begin() + count, [](const Candidate& a, const Candidate& b) { return a.cost < b.cost || (a.cost == b.cost && a.kept < b.kept); });
   for (int i = 0; i < count && least[i].cost <= best.cost; ++i) {
