@@ -94,7 +94,7 @@ void AddTrimCommand(CLI::App* app, int* exit_code) {
   trim->add_option("-o,--output", arguments->output, "A file of the same kind; a folder for several inputs; -")
       ->required();
   CLI::Option_group* target = trim->add_option_group("target", "What to keep");
-  target->add_option("--level", arguments->level, "Levels up to this one, 0 = base")->check(CLI::NonNegativeNumber);
+  target->add_option("--level", arguments->level, "Levels up to this one, 0 = base; those above that take no bytes stay")->check(CLI::NonNegativeNumber);
   target->add_option("--bytes", arguments->bytes, "As many refinements as fit into a file of this size")
       ->check(CLI::PositiveNumber);
   target->require_option(1);

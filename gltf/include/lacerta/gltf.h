@@ -145,7 +145,7 @@ struct UnpackResult {
 StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions& options);
 
 struct TrimOptions {
-  std::optional<int> level;       // keep no level above it; exactly one of the two has to be set
+  std::optional<int> level;       // keep no bytes of levels above it; exactly one of the two has to be set
   std::optional<uint64_t> bytes;  // of the GLB at most
   std::string folder;
 };
