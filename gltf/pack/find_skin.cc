@@ -13,6 +13,8 @@ namespace lacerta {
 namespace {
 
 constexpr size_t kMostPoses = 6;
+constexpr size_t kMostJoints = size_t{1} << 16;
+constexpr size_t kMostTransforms = 1'000'000;  // of all joints in all poses that are looked at
 
 // The node shows a mesh of the sources by this skin. All of them have to agree.
 StatusOr<uint64_t> SkinIndex(const GltfDocument& document, const std::vector<const Source*>& sources) {
@@ -167,10 +169,12 @@ StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const So
   Skin skin;
   skin.num_joints = json == nullptr ? 0 : static_cast<size_t>(ArraySize(*json, "joints"));
   if (skin.num_joints == 0) return Unsupported("its skin has no joints");
+  if (skin.num_joints > kMostJoints) return Unsupported("its skin has more joints than an index can name");
   LACERTA_ASSIGN_OR_RETURN(const std::vector<Transform> inverse_binds,
                            ReadInverseBinds(document, *json, skin.num_joints));
   double scale = 0.0;  // of the first pose, which is the one at rest
   for (const ScenePose& pose : poses) {
+    if ((skin.poses.size() + 1) * skin.num_joints > kMostTransforms) break;
     std::vector<Transform> joints;
     for (size_t j = 0; j < skin.num_joints; ++j) {
       const uint64_t node = AsIndex(FindElement(*json, "joints", j)).value_or(~uint64_t{0});

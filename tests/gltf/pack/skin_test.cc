@@ -143,6 +143,8 @@ TEST(Skin, WhatCannotBePosedIsNotSimplified) {
   document.json["skins"][0]["joints"] = {1, 2};
   EXPECT_NE(pack(document).reason.find("joint 2, which its skin has not got"), std::string::npos);
   EXPECT_EQ(pack(document).storage, PrimitiveStorage::kDraco);
+  document.json["skins"][0]["joints"] = std::vector<int>(70'000, 1);  // a few bytes each that would take a matrix in every pose
+  EXPECT_NE(pack(document).reason.find("more joints than an index can name"), std::string::npos);
 }
 
 class AnimatedAsset : public ::testing::TestWithParam<const char*> {};
