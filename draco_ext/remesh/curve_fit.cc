@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "geometry/vertex_area_vectors.h"
 #include "remesh/mesh_fit.h"
 #include "remesh/wedge_mesh.h"
 
@@ -17,17 +18,6 @@ std::vector<VertexFreedom> FreedomOf(const AttributedMesh& mesh) {
     own = std::max(own, wedges.freedom[v]);
   }
   return freedom;
-}
-
-std::vector<Vec3d> VertexNormals(const TriangleMesh& mesh) {
-  std::vector<Vec3d> normals(mesh.positions.size());
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
-    const Vec3d normal = Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a);
-    for (const uint32_t v : t) normals[v] += normal;
-  }
-  for (Vec3d& n : normals) n = Normalized(n);
-  return normals;
 }
 
 bool IsTurnedOver(const Triangle& t, const std::vector<Vec3f>& before, const std::vector<Vec3f>& after) {
@@ -45,7 +35,8 @@ void FitBesideCurves(const FitTarget& target, int rounds, AttributedMesh* mesh) 
   TriangleMesh& surface = mesh->surface;
   const std::vector<Vec3f> before = surface.positions;
   const std::vector<VertexFreedom> freedom = FreedomOf(*mesh);
-  const std::vector<Vec3d> normals = VertexNormals(surface);
+  std::vector<Vec3d> normals = VertexAreaVectors(surface);
+  for (Vec3d& n : normals) n = Normalized(n);
   FitToSurface(target, MeshNeighbors(surface), RateModel{}, rounds, &surface);
   for (size_t v = 0; v < before.size(); ++v) {
     if (freedom[v] == VertexFreedom::kSurface) continue;

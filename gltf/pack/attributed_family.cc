@@ -1,7 +1,7 @@
 #include "pack/attributed_family.h"
 
-#include <cstdlib>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <optional>

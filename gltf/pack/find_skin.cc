@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lacerta/surface_distance.h"
+#include "remesh/base_parts.h"
 
 namespace lacerta {
 namespace {
@@ -143,10 +144,7 @@ Status ScaleSmallPoses(const std::vector<const Source*>& sources, Skin* skin) {
   TriangleMesh all;
   for (const Source* source : sources) {
     primitives.push_back(&*source->primitive);
-    const TriangleMesh surface = Surface(*source->primitive);
-    const auto first = static_cast<uint32_t>(all.positions.size());
-    all.positions.insert(all.positions.end(), surface.positions.begin(), surface.positions.end());
-    for (const Triangle& t : surface.triangles) all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    all = Together(std::move(all), Surface(*source->primitive));
   }
   const double diagonal = BoundingBoxDiagonal(all);
   for (size_t pose = 0; pose < skin->poses.size(); ++pose) {

@@ -8,6 +8,7 @@
 #include "document/lattice.h"
 #include "lacerta/surface_distance.h"
 #include "pack/vertex_match.h"
+#include "remesh/base_parts.h"
 
 namespace lacerta {
 namespace {
@@ -32,9 +33,7 @@ TriangleMesh Morphed(const std::vector<MorphedPrimitive>& primitives, size_t tar
     for (uint32_t v = 0; offsets != nullptr && v < surface.positions.size(); ++v) {
       surface.positions[v] += {offsets->data.Float(v, 0), offsets->data.Float(v, 1), offsets->data.Float(v, 2)};
     }
-    const auto first = static_cast<uint32_t>(all.positions.size());
-    all.positions.insert(all.positions.end(), surface.positions.begin(), surface.positions.end());
-    for (const Triangle& t : surface.triangles) all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    all = Together(std::move(all), surface);
   }
   return all;
 }

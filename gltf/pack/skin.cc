@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "remesh/base_parts.h"
+
 namespace lacerta {
 
 bool IsSkinAttribute(const std::string& name) {
@@ -78,13 +80,11 @@ StatusOr<TriangleMesh> PosedSurface(const std::vector<const Primitive*>& primiti
   TriangleMesh result;
   for (const Primitive* primitive : primitives) {
     LACERTA_ASSIGN_OR_RETURN(const VertexInfluences influences, ReadInfluences(*primitive, skin.num_joints));
-    const TriangleMesh surface = Surface(*primitive);
-    const auto first = static_cast<uint32_t>(result.positions.size());
+    TriangleMesh surface = Surface(*primitive);
     for (size_t v = 0; v < surface.positions.size(); ++v) {
-      result.positions.push_back(
-          Vec3Cast<float>(skin.Posed(pose, Vec3Cast<double>(surface.positions[v]), influences.Of(v))));
+      surface.positions[v] = Vec3Cast<float>(skin.Posed(pose, Vec3Cast<double>(surface.positions[v]), influences.Of(v)));
     }
-    for (const Triangle& t : surface.triangles) result.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    result = Together(std::move(result), surface);
   }
   return result;
 }

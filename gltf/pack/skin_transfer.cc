@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "geometry/vertex_area_vectors.h"
+
 namespace lacerta {
 namespace {
 
@@ -23,17 +25,6 @@ Influences KeepLargest(Influences all) {
   for (Influence& influence : all) influence.weight /= sum;
   std::sort(all.begin(), all.end(), [](const Influence& a, const Influence& b) { return a.joint < b.joint; });
   return all;
-}
-
-// Sums of the area vectors around.
-std::vector<Vec3d> VertexNormals(const TriangleMesh& mesh) {
-  std::vector<Vec3d> normals(mesh.positions.size());
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
-    const Vec3d area = Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a);
-    for (const uint32_t v : t) normals[v] += area;
-  }
-  return normals;
 }
 
 }  // namespace
@@ -103,7 +94,7 @@ Influences SkinTransfer::At(uint32_t group, const Vec3f& position, const Vec3d& 
 
 SkinTransfer::ByVertex SkinTransfer::Transfer(AttributedMesh* mesh) const {
   MeshAttribute& poses = mesh->attributes[static_cast<size_t>(poses_ - meter_->original().attributes.data())];
-  const std::vector<Vec3d> normals = VertexNormals(mesh->surface);
+  const std::vector<Vec3d> normals = VertexAreaVectors(mesh->surface);
   const size_t columns = poses.components;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t>
       row_of;  // of a vertex and its old row; the first group decides for all
