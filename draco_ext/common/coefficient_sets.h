@@ -21,7 +21,7 @@ struct QuantizedLevel {
 inline constexpr int kBiasUnit = 32;
 inline constexpr int kMaxBias = 15;
 
-// How the two sets of one level are quantized. A step is in model units, >= 0, and has at most 8 significant bits
+// How one level is predicted, and its two sets quantized. A step is in model units, >= 0, and has at most 8 significant bits
 // (RoundStep); 0 means that the set is not coded: all its coefficients are zero and cost nothing.
 struct LevelSteps {
   float normal_step = 0.0f;
@@ -29,9 +29,16 @@ struct LevelSteps {
   // Reconstructed magnitudes are |q| - bias / 32 steps: 0 is the middle of a bin, 15 almost its lower end.
   uint8_t normal_bias = 0;      // 0..15
   uint8_t tangential_bias = 0;  // 0..15
+  bool is_curved = false;       // midpoints are predicted by common/curved_prediction.h; so are those of all coarser levels then
 
   // Whether no set is coded: all details are zero. Such a level has no segment.
   bool is_silent() const { return normal_step == 0 && tangential_step == 0; }
+  // The same level without coefficients.
+  LevelSteps Silent() const {
+    LevelSteps silent;
+    silent.is_curved = is_curved;
+    return silent;
+  }
 };
 
 // The step nearest to `step` that a stream can hold: the upper 16 bits of its binary32 form, rounded to nearest.

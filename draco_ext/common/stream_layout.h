@@ -15,7 +15,7 @@
 namespace lacerta {
 
 inline constexpr std::array<uint8_t, 3> kRefinementMagic = {'L', 'A', 'C'};
-inline constexpr uint8_t kRefinementVersion = 1;
+inline constexpr uint8_t kRefinementVersion = 1;  // lower half of its byte; the upper one is the number of curved levels
 inline constexpr int kMaxLevels = 12;
 // A base vertex has at most this many edges, so that no stencil makes a decoder slow.
 inline constexpr int kMaxBaseValence = 1024;

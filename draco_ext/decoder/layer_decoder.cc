@@ -22,6 +22,7 @@ LayerDecoder::LayerDecoder(std::vector<LevelSteps> steps, Topology base, size_t 
     : steps_(std::move(steps)), num_still_(num_still), last_level_(last_level), limits_(limits), stencils_(base) {
   topologies_.push_back(std::move(base));
   state_.levels.resize(steps_.size());
+  for (size_t i = 0; i < steps_.size(); ++i) state_.levels[i].steps = steps_[i].Silent();
 }
 
 Status LayerDecoder::CheckOrder(const std::vector<LayerPayload>& segments) const {

@@ -124,8 +124,9 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
     if (byte != expected)
       return InvalidData("the bytes after the base mesh are not a Lacerta refinement (no \"LAC\" mark)");
   }
-  const int version = cursor.Byte();
+  const int version_and_curves = cursor.Byte();
   if (cursor.at_end()) return Result();
+  const int version = version_and_curves & 0x0f, num_curved = version_and_curves >> 4;
   if (version != kRefinementVersion) {
     return Unsupported("refinement version " + std::to_string(version) + " is not known, this decoder reads version " +
                        std::to_string(kRefinementVersion) + "; a newer Lacerta may read it");
@@ -137,6 +138,7 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
     return InvalidData(std::to_string(num_levels) + " refinement levels; 1 to " + std::to_string(kMaxLevels) +
                        " are legal");
   }
+  if (num_curved > num_levels) return InvalidData(std::to_string(num_curved) + " curved levels of " + std::to_string(num_levels));
   RefinementHeader header;
   const bool has_base_step = (levels_and_flags & kHasBaseStep) != 0, has_tags = (levels_and_flags & kHasTags) != 0;
   header.has_layers = (levels_and_flags & kHasLayers) != 0;
@@ -163,6 +165,7 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   if (cursor.malformed()) return InvalidData("a number in the refinement header exceeds 32 bits");
   if (has_base_step && !IsStepBits(base_step_bits)) return InvalidData("the base step in the refinement header is not a positive number");
   header.base_step = StepFromBits(base_step_bits);
+  for (int i = 0; i < num_curved; ++i) header.steps[static_cast<size_t>(i)].is_curved = true;
   if (fault_of_steps != nullptr) return InvalidData(fault_of_steps);
   return Result(ReadHeader{std::move(header), cursor.position()});
 }

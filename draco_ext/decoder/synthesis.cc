@@ -3,13 +3,18 @@
 #include <cstdint>
 #include <utility>
 
+#include "common/curved_prediction.h"
 #include "common/local_frame.h"
 
 namespace lacerta {
+namespace {
 
-void AddDetails(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
-  Vec3f* const midpoints = positions->data() + coarse.num_vertices;
-  std::vector<std::pair<uint32_t, Vec3f>> details;  // added at last: frames depend on the predicted midpoints around
+using EdgeOffset = std::pair<uint32_t, Vec3f>;
+
+// Details of the edges that have any; their frames depend on the butterfly's midpoints around.
+std::vector<EdgeOffset> Details(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, Span<const Vec3f> positions,
+                                Span<const Vec3f> midpoints) {
+  std::vector<EdgeOffset> details;
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     const int32_t q1 = quantized.tangential[size_t{2} * e], q2 = quantized.tangential[size_t{2} * e + 1];
     const int32_t qn = quantized.normal[e];
@@ -17,7 +22,21 @@ void AddDetails(const Topology& coarse, const LevelSteps& steps, const Quantized
     const Vec3f detail = {Dequantize(q1, steps.tangential_step, steps.tangential_bias),
                           Dequantize(q2, steps.tangential_step, steps.tangential_bias),
                           Dequantize(qn, steps.normal_step, steps.normal_bias)};
-    details.emplace_back(e, LocalFrameAt(coarse, *positions, {midpoints, coarse.num_edges()}, e).ToWorld(detail));
+    details.emplace_back(e, LocalFrameAt(coarse, positions, midpoints, e).ToWorld(detail));
+  }
+  return details;
+}
+
+}  // namespace
+
+void AddDetails(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
+  Vec3f* const midpoints = positions->data() + coarse.num_vertices;
+  const Span<const Vec3f> predicted(midpoints, coarse.num_edges());
+  std::vector<EdgeOffset> details;
+  if (!steps.is_silent()) details = Details(coarse, steps, quantized, *positions, predicted);
+  if (steps.is_curved) {
+    const std::vector<Vec3f> offsets = CurveOffsets(coarse, *positions, predicted);
+    for (uint32_t e = 0; e < coarse.num_edges(); ++e) midpoints[e] += offsets[e];
   }
   for (const auto& [e, detail] : details) midpoints[e] += detail;
   for (uint32_t e = 0; e < coarse.num_edges() && !coarse.master.empty(); ++e) {
@@ -29,7 +48,7 @@ void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const Le
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
   positions->resize(size_t{coarse.num_vertices} + coarse.num_edges());
   PredictMidpoints(coarse, table, positions->data(), positions->data() + coarse.num_vertices);
-  if (!steps.is_silent()) AddDetails(coarse, steps, quantized, positions);
+  if (steps.is_curved || !steps.is_silent()) AddDetails(coarse, steps, quantized, positions);
 }
 
 }  // namespace lacerta

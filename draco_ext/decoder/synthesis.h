@@ -11,8 +11,8 @@
 
 namespace lacerta {
 
-// Appends the positions of the new vertices of one level, one per edge of `coarse`: butterfly prediction plus the
-// dequantized detail in the local frame of the edge's midpoint. A copy (Topology::is_copy) gets the position of its master.
+// Appends the positions of the new vertices of one level, one per edge of `coarse`: butterfly prediction, on curved levels moved onto
+// curves, plus the dequantized detail in the local frame of the butterfly's midpoint. A copy (Topology::is_copy) gets the position of its master.
 //   coarse     level i
 //   table      stencils of the base mesh or of `coarse`: subdivision makes no new extraordinary vertices
 //   quantized  shapes as in QuantizedLevel, or empty on a silent level; steps: its quantization
@@ -20,8 +20,7 @@ namespace lacerta {
 void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const LevelSteps& steps,
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions);
 
-// The second half of that: moves the predicted midpoints, the last #E of `positions`, to where the coefficients want them. Nothing to do on
-// a silent level.
+// The second half of that: moves the butterfly's midpoints, the last #E of `positions`, to where curves and coefficients want them.
 void AddDetails(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, std::vector<Vec3f>* positions);
 
 }  // namespace lacerta

@@ -101,7 +101,7 @@ StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope
   if (!target_.keeps_vertices) {
     // Levels far beyond the last detailed one hardly ever keep a coefficient: not looking at them takes a fraction of the time.
     constexpr size_t kTriedSilentLevels = 1;
-    for (size_t i = static_cast<size_t>(slope.last_detailed) + kTriedSilentLevels; i < steps.size(); ++i) steps[i] = LevelSteps();
+    for (size_t i = static_cast<size_t>(slope.last_detailed) + kTriedSilentLevels; i < steps.size(); ++i) steps[i] = steps[i].Silent();
   }
   CodedSurface coded = QuantizeClosedLoop(target_, lattice, steps, decoded);
   coded = Descend(target_, std::move(coded), options, decoded);

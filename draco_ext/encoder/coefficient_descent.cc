@@ -6,6 +6,7 @@
 
 #include "common/base_tags.h"
 #include "common/coefficient_coding.h"
+#include "common/curved_prediction.h"
 #include "common/local_frame.h"
 #include "decoder/synthesis.h"
 #include "encoder/bit_cost.h"
@@ -29,7 +30,7 @@ std::vector<Vec3f> LatticePoints(const BaseMesh& base) {
 // Moves the predicted vertices of level `level` (1 .. L), the last ones, to where its coefficients want them.
 void AddLevelDetails(const SurfaceTarget& target, const CodedSurface& coded, int level, std::vector<Vec3f>* positions) {
   const LevelSteps& steps = coded.steps[level - 1];
-  if (!steps.is_silent()) AddDetails(target.topologies[level - 1], steps, coded.levels[level - 1], positions);
+  if (steps.is_curved || !steps.is_silent()) AddDetails(target.topologies[level - 1], steps, coded.levels[level - 1], positions);
 }
 
 // Appends the vertices of level `level` (1 .. L) to the positions of the coarser ones. predicted: of them, where it is at hand.
@@ -235,10 +236,11 @@ QuantizedLevel QuantizeLevel(const SurfaceTarget& target, int level, const std::
   quantized.tangential.resize(size_t{2} * coarse.num_edges());
   if (step.is_silent()) return quantized;
   const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
+  const std::vector<Vec3f> offsets = step.is_curved ? CurveOffsets(coarse, positions, predicted) : std::vector<Vec3f>(predicted.size());
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     if (coarse.is_copy(e)) continue;
     const uint32_t v = coarse.num_vertices + e;
-    const Vec3f detail = target.points[v] - predicted[e];
+    const Vec3f detail = target.points[v] - predicted[e] - offsets[e];
     const Vec3f local = frames[e].ToLocal(detail);
     const float on_plane = Dot(detail, target.normals[v]) / Dot(frames[e].normal, target.normals[v]);
     // Where the tangent plane stands too steep the normal line meets it far away, or never.

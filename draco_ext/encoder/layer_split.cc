@@ -52,7 +52,7 @@ QualityLayer LayerBefore(const SurfaceTarget& target, const CodedSurface& coded,
     if (!layer.shifts[i]) {
       std::fill(level.normal.begin(), level.normal.end(), 0);
       std::fill(level.tangential.begin(), level.tangential.end(), 0);
-      steps = LevelSteps();
+      steps = steps.Silent();
       next.drops.push_back(0);
       continue;
     }

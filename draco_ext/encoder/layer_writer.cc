@@ -16,7 +16,7 @@ namespace {
 
 // The surface with all coefficients zero.
 CodedSurface WithoutDetails(CodedSurface surface) {
-  std::fill(surface.steps.begin(), surface.steps.end(), LevelSteps());
+  for (LevelSteps& steps : surface.steps) steps = steps.Silent();
   for (QuantizedLevel& level : surface.levels) {
     std::fill(level.normal.begin(), level.normal.end(), 0);
     std::fill(level.tangential.begin(), level.tangential.end(), 0);

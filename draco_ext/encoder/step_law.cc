@@ -13,6 +13,7 @@ constexpr double kSlopeShare = 0.12;       // lambda / (step^2 / N) where detail
 constexpr double kStepRatio = 1.2;         // between the steps of two levels below that, rounded as the header expects it (NextStepBits)
 constexpr double kDetailedScale = 0.5;     // a level carries detail when its scale exceeds this share of its step
 constexpr double kTangentialRatio = 2.0;   // of the tangential to the normal step
+constexpr int kCurvedLevels = 3;           // docs/decisions/0021-curved-prediction.md
 constexpr double kBaseVertices = 2.5e4;    // the base lattice is as fine as the steps of a level of so many vertices
 
 // The details of the edges of level - 1, before quantization: along the normal, or the whole where vertices are kept.
@@ -75,6 +76,7 @@ std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, int last_deta
       step = RoundStep(static_cast<float>(balanced / std::pow(kStepRatio, std::max(0, last_detailed - level))));
     }
     result[level - 1].tangential_step = RoundStep(static_cast<float>(kTangentialRatio) * step);
+    result[level - 1].is_curved = level <= kCurvedLevels;
   }
   return result;
 }

@@ -66,6 +66,10 @@ void PutSteps(const std::vector<LevelSteps>& steps, Bytes* bytes) {
   bytes->insert(bytes->end(), fields.begin(), fields.end());
 }
 
+int NumCurved(const std::vector<LevelSteps>& steps) {
+  return static_cast<int>(std::count_if(steps.begin(), steps.end(), [](const LevelSteps& s) { return s.is_curved; }));
+}
+
 void PutAttributes(const std::vector<CodedAttribute>& attributes, Bytes* bytes) {
   PutVarint(attributes.size(), bytes);
   for (const CodedAttribute& attribute : attributes) {
@@ -93,7 +97,7 @@ void PutAttributes(const std::vector<CodedAttribute>& attributes, Bytes* bytes) 
 Bytes WriteHeader(const BaseMesh& base, const std::vector<LevelSteps>& steps, const Bytes& tags, BaseStepField base_step, bool has_layers,
                   const WrittenAttributes* attributes) {
   Bytes bytes(kRefinementMagic.begin(), kRefinementMagic.end());
-  bytes.push_back(kRefinementVersion);
+  bytes.push_back(static_cast<uint8_t>(kRefinementVersion | NumCurved(steps) << 4));
   const bool has_base_step = base_step == BaseStepField::kWritten;
   bytes.push_back(static_cast<uint8_t>(steps.size() | (tags.empty() ? 0 : kHasTags) | (has_base_step ? kHasBaseStep : 0) |
                                        (has_layers ? kHasLayers : 0) | (attributes != nullptr ? kHasAttributes : 0)));
@@ -185,6 +189,9 @@ StatusOr<Bytes> CheckAndWriteHeader(const BaseMesh& base, Span<const Topology> t
   }
   if (!(base.step > 0) || RoundStep(base.step) != base.step) return InvalidArgument("the base step must be a positive number of 8 significant bits");
   if (levels.empty()) return Bytes();
+  for (size_t i = 1; i < steps.size(); ++i) {
+    if (steps[i].is_curved && !steps[i - 1].is_curved) return InvalidArgument("level " + std::to_string(i + 1) + " is curved, and a coarser one is not");
+  }
   LACERTA_ASSIGN_OR_RETURN(const Bytes coded_tags, WriteTags(base, tags, topologies[0]));
   for (size_t i = 0; i < levels.size(); ++i) {
     LACERTA_RETURN_IF_ERROR(CheckCoefficients(static_cast<int>(i) + 1, topologies[i], steps[i], levels[i]));

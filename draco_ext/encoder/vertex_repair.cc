@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/butterfly.h"
+#include "common/curved_prediction.h"
 #include "common/local_frame.h"
 #include "decoder/synthesis.h"
 #include "encoder/quantizer.h"
@@ -39,8 +40,9 @@ void RepairVertices(const SurfaceTarget& target, CodedSurface* coded) {
     QuantizedLevel& quantized = coded->levels[level - 1];
     const std::vector<Vec3f> predicted = PredictMidpoints(coarse, target.stencils, positions);
     const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
+    const std::vector<Vec3f> offsets = steps.is_curved ? CurveOffsets(coarse, positions, predicted) : std::vector<Vec3f>(predicted.size());
     for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-      const Vec3f local = frames[e].ToLocal(target.points[coarse.num_vertices + e] - predicted[e]);
+      const Vec3f local = frames[e].ToLocal(target.points[coarse.num_vertices + e] - predicted[e] - offsets[e]);
       Repair(local.x, steps.tangential_step, &quantized.tangential[2 * e]);
       Repair(local.y, steps.tangential_step, &quantized.tangential[2 * e + 1]);
       Repair(local.z, steps.normal_step, &quantized.normal[e]);
