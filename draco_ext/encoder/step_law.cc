@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/curved_prediction.h"
 #include "common/local_frame.h"
 #include "common/step_forecast.h"
 
@@ -16,16 +17,19 @@ constexpr double kTangentialRatio = 2.0;   // of the tangential to the normal st
 constexpr int kCurvedLevels = 3;           // docs/decisions/0021-curved-prediction.md
 constexpr double kBaseVertices = 2.5e4;    // the base lattice is as fine as the steps of a level of so many vertices
 
+bool IsCurved(int level) { return level <= kCurvedLevels; }
+
 // The details of the edges of level - 1, before quantization: along the normal, or the whole where vertices are kept.
 std::vector<double> DetailLengths(const SurfaceTarget& target, int level) {
   const Topology& coarse = target.topologies[level - 1];
   const std::vector<Vec3f> positions(target.points.begin(), target.points.begin() + coarse.num_vertices);
   const std::vector<Vec3f> predicted = target.midpoints[level - 1].Predict(positions);
   const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
+  const std::vector<Vec3f> offsets = IsCurved(level) ? CurveOffsets(coarse, positions, predicted) : std::vector<Vec3f>(predicted.size());
   std::vector<double> lengths;
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     if (coarse.is_copy(e)) continue;
-    const Vec3f detail = target.points[coarse.num_vertices + e] - predicted[e];
+    const Vec3f detail = target.points[coarse.num_vertices + e] - predicted[e] - offsets[e];
     lengths.push_back(target.keeps_vertices ? Norm(detail) : Dot(detail, frames[e].normal));
   }
   return lengths;
@@ -76,7 +80,7 @@ std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, int last_deta
       step = RoundStep(static_cast<float>(balanced / std::pow(kStepRatio, std::max(0, last_detailed - level))));
     }
     result[level - 1].tangential_step = RoundStep(static_cast<float>(kTangentialRatio) * step);
-    result[level - 1].is_curved = level <= kCurvedLevels;
+    result[level - 1].is_curved = IsCurved(level);
   }
   return result;
 }
