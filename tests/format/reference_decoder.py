@@ -116,13 +116,17 @@ def read_attributes(reader, num_levels):
 
 
 def read_header(reader, base):
-    assert reader.take(3) == b"LAC" and reader.unsigned(1) == 1
+    assert reader.take(3) == b"LAC"
+    version = reader.unsigned(1)
+    assert version & 15 == 1
     counts = reader.unsigned(1)
-    assert 1 <= counts & 15 <= 12
+    assert 1 <= counts & 15 <= 12 and version >> 4 <= counts & 15
     if counts & 32:
         assert step_value(reader.unsigned(2)) == base["step"]
     assert reader.unsigned(2) == base_checksum(base)
     levels = read_steps(reader, counts & 15)
+    for number, level in enumerate(levels, 1):
+        level["curved"] = number <= version >> 4
     length = 0
     if counts & 16:
         length = reader.varint()
@@ -493,7 +497,7 @@ def take_layer_segment(reader, levels, first_decoder):
     at.shift = shift
     if drop is None:
         first_decoder.coarse = coarse
-        sets = {name: (at.step_bits(name),) for name in at.sets}
+        sets = {name: (at.step_bits(name),) for name in ("normal", "tangential")}
         at.normal, at.tangential = first_decoder.decode(at.level, sets, RangeDecoder(payload))
         return
     decoder = RangeDecoder(payload)
@@ -605,6 +609,24 @@ def stencil(level, e):
     return result
 
 
+def curve_heights(level, normals, middles, positions):
+    """How far midpoints move along their normals, on a curved level."""
+    around = [[0.0, 0.0, 0.0] for _ in range(level.num_vertices)]
+    for t in level.triangles:
+        sides = [unit(sub(positions[t[(k + 2) % 3]], positions[t[(k + 1) % 3]])) for k in range(3)]
+        for k in range(3):
+            around[t[k]] = add(around[t[k]], cross(sides[(k + 1) % 3], sides[(k + 2) % 3]))
+    around = [unit(n) for n in around]
+    heights = []
+    for e, (a, b, _, _) in enumerate(level.edges):
+        side = sub(positions[b], positions[a])
+        hermite = scale(sub(scale(around[b], dot(side, around[b])), scale(around[a], dot(side, around[a]))), 1 / 8)
+        butterfly = sub(middles[e], scale(add(positions[a], positions[b]), 1 / 2))
+        is_smooth = not level.curves(a) and not level.curves(b)
+        heights.append(dot(sub(hermite, butterfly), normals[e]) if is_smooth else 0.0)
+    return heights
+
+
 def synthesize(level, sets, normal, tangential, positions):
     middles = [add(*(scale(positions[v], w) for v, w in stencil(level, e))) for e in range(len(level.edges))]
     normals = [[0.0, 0.0, 0.0] for _ in middles]
@@ -614,13 +636,13 @@ def synthesize(level, sets, normal, tangential, positions):
         middle = cross(sub(m[1], m[0]), sub(m[2], m[0]))
         for k in range(3):
             normals[edges[k]] = add(normals[edges[k]], middle, corner[(k + 1) % 3], corner[(k + 2) % 3])
+    normals = [n if n != [0.0, 0.0, 0.0] else [0.0, 0.0, 1.0] for n in map(unit, normals)]
+    heights = curve_heights(level, normals, middles, positions) if sets["curved"] else [0.0] * len(middles)
     for e, (a, b, _, _) in enumerate(level.edges):
         if level.master[e] is not None:
             positions.append(positions[level.num_vertices + level.master[e]])
             continue
-        n = unit(normals[e])
-        if n == [0.0, 0.0, 0.0]:
-            n = [0.0, 0.0, 1.0]
+        n = normals[e]
         along = unit(sub(positions[b], positions[a]))
         t1 = sub(along, scale(n, dot(along, n)))
         if dot(t1, t1) <= 1e-6:
@@ -630,7 +652,7 @@ def synthesize(level, sets, normal, tangential, positions):
         t1 = unit(t1)
         t2 = cross(n, t1)
         d1, d2 = (dequantize(q, *sets["tangential"]) for q in tangential[2 * e:2 * e + 2])
-        positions.append(add(middles[e], scale(t1, d1), scale(t2, d2), scale(n, dequantize(normal[e], *sets["normal"]))))
+        positions.append(add(middles[e], scale(t1, d1), scale(t2, d2), scale(n, heights[e] + dequantize(normal[e], *sets["normal"]))))
 
 
 # --- Integers of the compact base ---

@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   lacerta::fuzz::FuzzInput input(data, size);
   const int choice = input.Byte();
   const lacerta::BaseMesh base = (choice & 1) != 0 ? lacerta::testing::Square() : lacerta::testing::Octahedron();
-  const int num_levels = 1 + (choice >> 1) % 3;
+  const int num_levels = 1 + (choice >> 1) % 3, num_curved = choice >> 4;
   const std::vector<lacerta::Topology> topologies = lacerta::BuildTopologies(base, num_levels).value();
   std::vector<lacerta::LevelSteps> steps;
   std::vector<lacerta::QuantizedLevel> levels;
@@ -36,6 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
       q.normal.push_back((coded & 1) != 0 ? Coefficient(&input) : 0);
       for (int k = 0; k < 2; ++k) q.tangential.push_back((coded & 2) != 0 ? Coefficient(&input) : 0);
     }
+    steps.back().is_curved = static_cast<int>(steps.size()) <= num_curved;
     SynthesizeLevel(t, lacerta::StencilTable(t), steps.back(), q, &expected);
     levels.push_back(std::move(q));
   }

@@ -20,6 +20,7 @@ namespace lacerta {
 namespace {
 
 using ::lacerta::testing::Coefficients;
+using ::lacerta::testing::Curved;
 using ::lacerta::testing::InLayers;
 using ::lacerta::testing::LawfulSteps;
 using ::lacerta::testing::Octahedron;
@@ -41,6 +42,7 @@ struct Golden {
   double scale;         // of the coefficients of level 1
   bool lawful = false;  // steps of the default mode, level 2 silent, the base step left out
   bool layered = false;  // in three rounds
+  int num_curved = 0;
 };
 
 std::string PathOf(const Golden& golden, const char* extension) {
@@ -111,6 +113,7 @@ TEST_P(GoldenTest, DecodesAndIsWrittenAgain) {
     c.steps = LawfulSteps(c.steps.size());
     Silence(2, &c);
   }
+  c = Curved(std::move(c), golden.num_curved);
   const BaseStepField base_step = golden.lawful ? BaseStepField::kLeftOut : BaseStepField::kWritten;
   const std::vector<Topology> topologies = BuildTopologies(base, golden.num_levels, tags).value();
   const Bytes written = golden.layered ? WriteLayers(base, topologies, c.steps, c.levels, InLayers(c), tags, base_step).value().bytes
@@ -145,7 +148,10 @@ INSTANTIATE_TEST_SUITE_P(Version1, GoldenTest,
                                            Golden{"octahedron_silent_level", {Octahedron()}, 3, 30, 4.0, true},
                                            Golden{"torus_layers", {Torus(6, 5)}, 3, 31, 9.0, false, true},
                                            Golden{"octahedron_layers_silent_level", {Octahedron()}, 4, 32, 12.0, true, true},
-                                           Golden{"three_sheets_layers", ThreeSheets(), 3, 33, 6.0, false, true}),
+                                           Golden{"three_sheets_layers", ThreeSheets(), 3, 33, 6.0, false, true},
+                                           Golden{"torus_curved", {Torus(6, 5)}, 3, 34, 2.0, false, false, 3},
+                                           Golden{"octahedron_crease_curved", OctahedronWithCrease(), 3, 35, 4.0, false, false, 2},
+                                           Golden{"octahedron_layers_silent_level_curved", {Octahedron()}, 4, 36, 12.0, true, true, 3}),
                          [](const auto& golden) { return std::string(golden.param.name); });
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace lacerta {
 namespace {
 
 using ::lacerta::testing::Coefficients;
+using ::lacerta::testing::Curved;
 using ::lacerta::testing::LawfulSteps;
 using ::lacerta::testing::Octahedron;
 using ::lacerta::testing::RandomCoefficients;
@@ -72,6 +73,19 @@ TEST(StreamWriterTest, RoundTripsTags) {
   for (const TaggedBase& tagged : TaggedBases()) {
     ExpectRoundTrip(tagged.base, RandomCoefficients(tagged.base, 3, 6, 4.0, tagged.tags), tagged.tags);
   }
+}
+
+TEST(StreamWriterTest, RoundTripsCurvedLevels) {
+  for (int num_curved = 1; num_curved <= 3; ++num_curved) {
+    for (const TaggedBase& tagged : TaggedBases()) {
+      const Coefficients plain = RandomCoefficients(tagged.base, 3, 6, 4.0, tagged.tags), curved = Curved(plain, num_curved);
+      ExpectRoundTrip(tagged.base, curved, tagged.tags);
+      const Bytes bytes = WriteRefinement(tagged.base, curved.steps, curved.levels, tagged.tags).value().bytes;
+      EXPECT_EQ(bytes.size(), WriteRefinement(tagged.base, plain.steps, plain.levels, tagged.tags).value().bytes.size());
+    }
+  }
+  const Coefficients plain = RandomCoefficients(Torus(6, 5), 3, 6);
+  EXPECT_FALSE(Synthesize(Torus(6, 5), Curved(plain, 1), {}) == Synthesize(Torus(6, 5), plain, {}));
 }
 
 TEST(StreamWriterTest, TagsOfNothingCostNothing) {
@@ -153,6 +167,7 @@ TEST(StreamWriterTest, StepsOfEveryKindRoundTrip) {
     const int num_levels = 1 + static_cast<int>(random() % 3);
     Coefficients c = RandomCoefficients(base, num_levels, 1, 0.0);
     c.steps = LawfulSteps(static_cast<size_t>(num_levels));
+    c = Curved(std::move(c), static_cast<int>(random() % static_cast<uint32_t>(num_levels + 1)));
     for (LevelSteps& s : c.steps) {
       if (random() % 2 == 0) s.normal_step = any_step();
       if (random() % 2 == 0) s.tangential_step = any_step();
@@ -167,6 +182,7 @@ TEST(StreamWriterTest, StepsOfEveryKindRoundTrip) {
       EXPECT_EQ(read[i].tangential_step, c.steps[i].tangential_step) << trial;
       EXPECT_EQ(read[i].normal_bias, c.steps[i].normal_bias) << trial;
       EXPECT_EQ(read[i].tangential_bias, c.steps[i].tangential_bias) << trial;
+      EXPECT_EQ(read[i].is_curved, c.steps[i].is_curved) << trial;
     }
     ASSERT_EQ(DecodeRefinement(base, bytes, {}).value().level, num_levels) << trial;
   }
@@ -194,6 +210,9 @@ TEST(StreamWriterTest, RefusesWhatAStreamCannotHold) {
   Coefficients c = good;
   c.steps.pop_back();
   EXPECT_THAT(refusal(c), HasSubstr("differ"));
+  c = good;
+  c.steps[1].is_curved = true;
+  EXPECT_THAT(refusal(c), HasSubstr("level 2 is curved, and a coarser one is not"));
   c = good;
   c.levels[1].normal.pop_back();
   EXPECT_THAT(refusal(c), HasSubstr("normal set of level 2 has 47 coefficients, not 48"));

@@ -129,6 +129,12 @@ inline Coefficients RandomCoefficients(const BaseMesh& base, int num_levels, uin
   return result;
 }
 
+// The same with the first levels curved.
+inline Coefficients Curved(Coefficients c, int num_curved) {
+  for (int i = 0; i < num_curved; ++i) c.steps[i].is_curved = true;
+  return c;
+}
+
 // Steps as the default mode takes them.
 inline std::vector<LevelSteps> LawfulSteps(size_t num_levels) {
   std::vector<LevelSteps> steps;
