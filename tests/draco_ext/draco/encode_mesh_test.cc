@@ -179,7 +179,7 @@ TEST(EncodeMeshTest, StatesOfLayersComeNearerAndNearer) {
     options.quality_layers = 3;
     const EncodedMesh encoded = EncodeOrDie(Scan(), options);
     EXPECT_GE(encoded.report.levels.back().psnr, 54);
-    EXPECT_LT(encoded.report.levels.back().psnr, 54.3);
+    EXPECT_LT(encoded.report.levels.back().psnr, 54.45);  // a coefficient of so small a mesh is worth 0.5 dB
     ASSERT_EQ(encoded.part_sizes.size(), encoded.report.levels.size());
     const bool is_layered = DecodeMesh(encoded.stream, {}).value().has_layers;
     EXPECT_TRUE(is_layered);
