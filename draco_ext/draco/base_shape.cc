@@ -25,7 +25,8 @@ namespace {
 constexpr std::array<double, 2> kAspectPowers = {1.0, 2.0};
 constexpr int kMostLevels = 3;  // finer details hardly depend on the base
 
-double LogDetailBits(const InputSurface& surface, const CollapseHistory& history, double num_base_vertices, double lambda) {
+double LogDetailBits(const InputSurface& surface, const CollapseHistory& history, double num_base_vertices, double lambda,
+                     EncodeMode mode) {
   const double num_vertices = static_cast<double>(surface.mesh().positions.size());
   const double time = std::min<double>(history.num_collapses(), num_vertices - std::min(num_vertices, num_base_vertices));
   const BaseDomain domain(history, static_cast<uint32_t>(time));
@@ -33,13 +34,15 @@ double LogDetailBits(const InputSurface& surface, const CollapseHistory& history
   const double refinement = std::log(num_vertices / domain.num_vertices()) / std::log(4.0);
   options.num_levels = static_cast<int>(std::clamp<double>(std::floor(refinement), 1, kMostLevels));
   const SurfaceTarget target = MakeSurfaceTarget(Pierce(surface, domain, domain.PositionsOn(surface.mesh()), options));
-  return std::log(EstimateDetailBits(target, StepsForSlope(target, DetailScales(target), lambda)) + 1);
+  std::vector<LevelSteps> steps = StepsForSlope(target, DetailScales(target), lambda);
+  for (LevelSteps& s : steps) s.is_curved = s.is_curved && mode == EncodeMode::kDefault;
+  return std::log(EstimateDetailBits(target, steps) + 1);
 }
 
 }  // namespace
 
 CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& topology, double typical_base, double lambda,
-                                  const std::vector<double>& sizes) {
+                                  EncodeMode mode, const std::vector<double>& sizes) {
   if (sizes.empty()) {
     DecimateOptions options;
     options.aspect_power = kAspectPowers[0];
@@ -53,7 +56,7 @@ CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& t
   });
   std::vector<double> bits(kAspectPowers.size() * sizes.size());
   tbb::parallel_for(size_t{0}, bits.size(), [&](size_t i) {
-    bits[i] = LogDetailBits(surface, *histories[i / sizes.size()], typical_base * sizes[i % sizes.size()], lambda);
+    bits[i] = LogDetailBits(surface, *histories[i / sizes.size()], typical_base * sizes[i % sizes.size()], lambda, mode);
   });
   size_t best = 0;
   double fewest = std::numeric_limits<double>::infinity();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/subdivision.h"
+#include "lacerta/codec.h"
 #include "remesh/collapse_history.h"
 #include "remesh/input_surface.h"
 
@@ -19,10 +20,11 @@ namespace lacerta {
 //   topology      of surface.mesh(), with its curves
 //   typical_base  vertices of the base meshes that streams of the quality asked for usually have
 //   lambda        slope of the rate-distortion curve, squared model units per bit
+//   mode          of the streams
 //   sizes         of bases that are looked at, as shares of the typical one; a single size may be a fluke; none: the surface is simplified
 //                 in the way that is best on the whole
 CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& topology, double typical_base, double lambda,
-                                  const std::vector<double>& sizes = {0.6, 1.0, 1.6});
+                                  EncodeMode mode, const std::vector<double>& sizes = {0.6, 1.0, 1.6});
 
 }  // namespace lacerta
 

@@ -161,7 +161,10 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
   const double psnr = TypicalPsnr(target, static_cast<double>(mesh.positions.size()));
   std::optional<CollapseHistory> history;
   tbb::parallel_invoke(
-      [&] { history.emplace(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), UsualLambda(psnr, meter.diagonal()), effort.shape_sizes)); },
+      [&] {
+        const double lambda = UsualLambda(psnr, meter.diagonal());
+        history.emplace(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), lambda, options.mode, effort.shape_sizes));
+      },
       [&] {
         if (sequence != nullptr) sequence->emplace(mesh);
       });

@@ -20,12 +20,12 @@ constexpr double kBaseVertices = 2.5e4;    // the base lattice is as fine as the
 bool IsCurved(int level) { return level <= kCurvedLevels; }
 
 // The details of the edges of level - 1, before quantization: along the normal, or the whole where vertices are kept.
-std::vector<double> DetailLengths(const SurfaceTarget& target, int level) {
+std::vector<double> DetailLengths(const SurfaceTarget& target, int level, bool is_curved) {
   const Topology& coarse = target.topologies[level - 1];
   const std::vector<Vec3f> positions(target.points.begin(), target.points.begin() + coarse.num_vertices);
   const std::vector<Vec3f> predicted = target.midpoints[level - 1].Predict(positions);
   const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
-  const std::vector<Vec3f> offsets = IsCurved(level) ? CurveOffsets(coarse, positions, predicted) : std::vector<Vec3f>(predicted.size());
+  const std::vector<Vec3f> offsets = is_curved ? CurveOffsets(coarse, positions, predicted) : std::vector<Vec3f>(predicted.size());
   std::vector<double> lengths;
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     if (coarse.is_copy(e)) continue;
@@ -43,7 +43,7 @@ std::vector<double> DetailScales(const SurfaceTarget& target) {
   std::vector<double> scales;
   for (int level = 1; level <= target.num_levels(); ++level) {
     double sum = 0;
-    for (const double length : DetailLengths(target, level)) sum += length * length;
+    for (const double length : DetailLengths(target, level, IsCurved(level))) sum += length * length;
     scales.push_back(std::sqrt(sum / target.topologies[level - 1].num_edges()));
   }
   return scales;
@@ -52,7 +52,7 @@ std::vector<double> DetailScales(const SurfaceTarget& target) {
 double EstimateDetailBits(const SurfaceTarget& target, const std::vector<LevelSteps>& steps) {
   double bits = 0;
   for (int level = 1; level <= target.num_levels(); ++level) {
-    for (const double length : DetailLengths(target, level)) {
+    for (const double length : DetailLengths(target, level, steps[level - 1].is_curved)) {
       const double q = length / steps[level - 1].normal_step;
       bits += 0.5 * std::log2(1 + q * q);
     }
