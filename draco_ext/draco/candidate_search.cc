@@ -17,7 +17,9 @@ namespace {
 constexpr double kPsnrPerLogLambda = -2.9;  // dB per unit of ln(lambda)
 constexpr double kLogBytesPerLogLambda = -0.32;
 constexpr double kLogBytesPerDecibel = kLogBytesPerLogLambda / kPsnrPerLogLambda;
-constexpr double kFirstLambda = 1.2e-4;  // of the squared distance aimed at, per bit
+constexpr double kFirstLambda = 1.2e-4;  // of the squared distance aimed at, per bit, at kFirstPsnr
+constexpr double kFirstPsnr = 75;        // below, a bit brings more
+constexpr double kFirstGrowth = 0.077;   // of ln(lambda) beside the squared distance, per dB
 constexpr double kUsualPsnr = 70;        // where to begin when only the rate is given
 
 // What counts as met: [psnr, psnr + 0.3) and (0.98, 1] of the bytes, with a margin for the noise of the measure.
@@ -33,8 +35,9 @@ constexpr double kStepChange = 1.5;  // between slopes of steps that are tried
 }  // namespace
 
 double UsualLambda(double psnr, double diagonal) {
+  constexpr double kLowest = 50, kHighest = 85;  // dB that this was seen at
   const double distance = DistanceOfPsnr(psnr, diagonal);
-  return kFirstLambda * distance * distance;
+  return kFirstLambda * distance * distance * std::exp(kFirstGrowth * (kFirstPsnr - std::clamp(psnr, kLowest, kHighest)));
 }
 
 CandidateSearch::CandidateSearch(const NormalMeshCandidate& candidate, double remesh_psnr, const SurfaceDistanceMeter& meter,
@@ -151,9 +154,9 @@ StatusOr<double> CandidateSearch::Score() {
   std::optional<Attempt> nearest;
   for (int i = 0; i < kScoreTries; ++i) {
     const double log_lambda = NextGuess();
-    steps_.last_detailed = candidate_.LastDetailed(std::exp(log_lambda));
+    const int before = std::exchange(steps_.last_detailed, candidate_.LastDetailed(std::exp(log_lambda)));
     LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(log_lambda, effort_.score_passes, 1));
-    if (nearest) LearnSlope(*nearest, attempt);
+    if (nearest && steps_.last_detailed == before) LearnSlope(*nearest, attempt);  // else they are not of one curve
     if (!nearest || std::fabs(Miss(attempt)) < std::fabs(Miss(*nearest))) nearest = std::move(attempt);
     if (std::fabs(Miss(*nearest)) < kNearEnough) break;
   }
