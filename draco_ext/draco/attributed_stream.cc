@@ -93,7 +93,7 @@ BaseMesh LatticeThatKeepsApart(const TriangleMesh& base, double step) {
 StatusOr<AttributedBase> BaseOf(const AttributedNormalMesh& mesh, const AttributedStreamOptions& options, std::vector<uint32_t>* order) {
   const SemiRegularMesh& surface = mesh.surface.mesh;
   const std::vector<Vec3f> positions(surface.positions.begin(), surface.positions.begin() + surface.num_base_vertices);
-  const BaseMesh lattice = LatticeThatKeepsApart({positions, surface.base_triangles}, BaseStepForSlope(options.lambda));
+  const BaseMesh lattice = LatticeThatKeepsApart({positions, surface.base_triangles}, BaseStepForSlope(options.lambda, surface.num_base_vertices));
   const uint32_t num_groups = mesh.base_groups.empty() ? 1 : *std::max_element(mesh.base_groups.begin(), mesh.base_groups.end()) + 1;
   if (num_groups > surface.base_triangles.size()) return InvalidArgument("there are groups without a triangle");
   AttributedBase base;

@@ -93,7 +93,7 @@ StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope
     return coded;
   }
   const std::vector<Vec3f> base(target_.points.begin(), target_.points.begin() + num_base_vertices());
-  const BaseMesh lattice = BaseLattice({base, normal_mesh_.mesh.base_triangles}, BaseStepForSlope(slope.base_lambda));
+  const BaseMesh lattice = BaseLattice({base, normal_mesh_.mesh.base_triangles}, BaseStepForSlope(slope.base_lambda, num_base_vertices()));
   DescentOptions options;
   options.lambda = slope.lambda;
   options.passes = slope.passes;

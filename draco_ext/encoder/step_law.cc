@@ -15,7 +15,8 @@ constexpr double kStepRatio = 1.2;         // between the steps of two levels be
 constexpr double kDetailedScale = 0.5;     // a level carries detail when its scale exceeds this share of its step
 constexpr double kTangentialRatio = 2.0;   // of the tangential to the normal step
 constexpr int kCurvedLevels = 3;           // docs/decisions/0021-curved-prediction.md
-constexpr double kBaseVertices = 2.5e4;    // the base lattice is as fine as the steps of a level of so many vertices
+// The base lattice is as fine as the steps of a level of so many vertices: finer for small bases, each vertex of which moves much.
+constexpr double kFinestBase = 7.5e3, kCoarsestBase = 2.5e4, kPerBaseVertex = 100;
 
 bool IsCurved(int level) { return level <= kCurvedLevels; }
 
@@ -89,6 +90,8 @@ std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, const std::ve
   return StepsForSlope(target, LastDetailedLevel(target, detail_scales, lambda), lambda);
 }
 
-double BaseStepForSlope(double lambda) { return BalancedStep(lambda, kBaseVertices); }
+double BaseStepForSlope(double lambda, double num_base_vertices) {
+  return BalancedStep(lambda, std::clamp(kPerBaseVertex * num_base_vertices, kFinestBase, kCoarsestBase));
+}
 
 }  // namespace lacerta

@@ -32,7 +32,7 @@ std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, const std::ve
 double EstimateDetailBits(const SurfaceTarget& target, const std::vector<LevelSteps>& steps);
 
 // Step of the base lattice, not yet rounded, model units.
-double BaseStepForSlope(double lambda);
+double BaseStepForSlope(double lambda, double num_base_vertices);
 
 }  // namespace lacerta
 

@@ -53,7 +53,7 @@ TEST(SubdividedCandidateTest, KeepsVerticesWithinTheSteps) {
     for (const double psnr : {60.0, 70.0, 80.0, 90.0}) {
       const double distance = DistanceOfPsnr(psnr, meter.diagonal()), lambda = 1.2e-4 * distance * distance;
       const CodedStream stream = candidate.Code(lambda, EncodeMode::kDefault).value();
-      double step = BaseStepForSlope(lambda);
+      double step = BaseStepForSlope(lambda, target.topologies[0].num_vertices);
       for (const LevelSteps& s : StepsForSlope(target, DetailScales(target), lambda)) step = std::max(step, double{s.tangential_step});
       const std::vector<Vec3f> expected = candidate.RemeshedSurface().positions;
       ASSERT_EQ(stream.decoded.positions.size(), input.mesh.positions.size());

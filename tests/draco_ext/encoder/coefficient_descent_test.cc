@@ -23,7 +23,7 @@ SurfaceTarget Bumps() { return MakeSurfaceTarget(Remesh(shapes::BumpySphere(4, 0
 
 CodedSurface ClosedLoopAt(const SurfaceTarget& target, double lambda) {
   const std::vector<Vec3f> base(target.points.begin(), target.points.begin() + target.topologies[0].num_vertices);
-  const BaseMesh lattice = RoundToLattice({base, target.topologies[0].triangles}, static_cast<float>(BaseStepForSlope(lambda)));
+  const BaseMesh lattice = RoundToLattice({base, target.topologies[0].triangles}, static_cast<float>(BaseStepForSlope(lambda, target.topologies[0].num_vertices)));
   return QuantizeClosedLoop(target, lattice, StepsForSlope(target, DetailScales(target), lambda));
 }
 
@@ -121,7 +121,7 @@ TEST(Descend, PositionsAreThoseThatDecodersGet) {
   const SurfaceTarget target = Bumps();
   for (const double lambda : {1e-12, 1e-9, 1e-7}) {
     const std::vector<Vec3f> base(target.points.begin(), target.points.begin() + target.topologies[0].num_vertices);
-    const BaseMesh lattice = RoundToLattice({base, target.topologies[0].triangles}, static_cast<float>(BaseStepForSlope(lambda)));
+    const BaseMesh lattice = RoundToLattice({base, target.topologies[0].triangles}, static_cast<float>(BaseStepForSlope(lambda, target.topologies[0].num_vertices)));
     std::vector<Vec3f> positions;
     CodedSurface coded = QuantizeClosedLoop(target, lattice, StepsForSlope(target, DetailScales(target), lambda), &positions);
     EXPECT_EQ(positions, Synthesize(target, coded));

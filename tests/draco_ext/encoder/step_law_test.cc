@@ -63,10 +63,12 @@ TEST(StepsForSlope, GrowWithTheSlopeAndAreWhatAStreamHolds) {
   }
 }
 
-TEST(BaseStepForSlope, IsTheRootOfTheSlope) {
-  EXPECT_NEAR(BaseStepForSlope(4e-10) / BaseStepForSlope(1e-10), 2, 1e-9);
-  EXPECT_GT(BaseStepForSlope(1e-10), 1e-4);
-  EXPECT_LT(BaseStepForSlope(1e-10), 1e-1);
+TEST(BaseStepForSlope, IsTheRootOfTheSlopeAndFinerForSmallBases) {
+  EXPECT_NEAR(BaseStepForSlope(4e-10, 300) / BaseStepForSlope(1e-10, 300), 2, 1e-9);
+  EXPECT_GT(BaseStepForSlope(1e-10, 300), 1e-4);
+  EXPECT_LT(BaseStepForSlope(1e-10, 300), 1e-1);
+  EXPECT_LT(BaseStepForSlope(1e-10, 50), 0.8 * BaseStepForSlope(1e-10, 150));
+  EXPECT_GT(BaseStepForSlope(1e-10, 4), 0.3 * BaseStepForSlope(1e-10, 1e6));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ std::vector<LevelSteps> StepsAt(const SurfaceTarget& target, double lambda) {
 
 CodedSurface ClosedLoopAt(const SurfaceTarget& target, double lambda) {
   const std::vector<Vec3f> base(target.points.begin(), target.points.begin() + target.topologies[0].num_vertices);
-  const BaseMesh lattice = RoundToLattice({base, target.topologies[0].triangles}, static_cast<float>(BaseStepForSlope(lambda)));
+  const BaseMesh lattice = RoundToLattice({base, target.topologies[0].triangles}, static_cast<float>(BaseStepForSlope(lambda, target.topologies[0].num_vertices)));
   return QuantizeClosedLoop(target, lattice, StepsAt(target, lambda));
 }
 
