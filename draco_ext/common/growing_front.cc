@@ -18,7 +18,7 @@ void GrowingFront::Link(uint32_t first, uint32_t second) {
 void GrowingFront::SetFree(uint32_t entry, uint32_t free) {
   entries_[entry].free = free;
   entries_[entry].stamp = ++stamp_;
-  queue_.emplace(~free, stamp_, entry);
+  queue_.emplace(int64_t{stamp_} - (int64_t{free} << 32), entry);
 }
 
 std::array<uint32_t, 3> GrowingFront::AddTriangle(const std::array<uint32_t, 3>& vertices, const std::array<uint32_t, 3>& free) {
@@ -30,8 +30,8 @@ std::array<uint32_t, 3> GrowingFront::AddTriangle(const std::array<uint32_t, 3>&
 
 uint32_t GrowingFront::TakeFocus() {
   for (;;) {
-    const auto [free, stamp, entry] = queue_.top();
-    if (entries_[entry].stamp == stamp) return entry;
+    const auto [priority, entry] = queue_.top();
+    if (entries_[entry].stamp == static_cast<uint32_t>(priority)) return entry;
     queue_.pop();
   }
 }

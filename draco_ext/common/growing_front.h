@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <queue>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "common/subdivision.h"
@@ -48,7 +48,8 @@ class GrowingFront {
 
   std::vector<FrontEntry> entries_;
   std::vector<uint32_t> live_;
-  std::priority_queue<std::tuple<uint32_t, uint32_t, uint32_t>> queue_;  // ~free, stamp, entry; out of date where the stamp is
+  // stamp - 2^32 free, entry; out of date where the stamp is. Of the type of PositionPredictor's: one instance of code.
+  std::priority_queue<std::pair<int64_t, uint32_t>> queue_;
   uint32_t stamp_ = 0;
 };
 

@@ -63,6 +63,12 @@ lacerta_result Guarded(const Call& call) noexcept {
 #endif
 }
 
+// Keeps the message of a status.
+lacerta_result Told(const Status& status, lacerta_decoder* decoder) {
+  decoder->message = status.message();
+  return ResultOf(status.code());
+}
+
 // Runs `call`, which returns a Status, with the decoder locked, and keeps its message.
 template <typename Call>
 lacerta_result Locked(lacerta_decoder* decoder, const Call& call) noexcept {
@@ -70,11 +76,7 @@ lacerta_result Locked(lacerta_decoder* decoder, const Call& call) noexcept {
   return Guarded([&] {
     const std::lock_guard<std::mutex> lock(decoder->mutex);
     decoder->message.clear();
-    const lacerta_result result = Guarded([&] {
-      const Status status = call();
-      decoder->message = status.message();
-      return ResultOf(status.code());
-    });
+    const lacerta_result result = Guarded([&] { return Told(call(), decoder); });
     if (result == LACERTA_OUT_OF_MEMORY) decoder->message = "out of memory";  // short: needs none
     return result;
   });
