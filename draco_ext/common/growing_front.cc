@@ -1,5 +1,7 @@
 #include "common/growing_front.h"
 
+#include <algorithm>
+
 namespace lacerta {
 
 uint32_t GrowingFront::Make(uint32_t vertex, uint32_t free) {
@@ -18,7 +20,8 @@ void GrowingFront::Link(uint32_t first, uint32_t second) {
 void GrowingFront::SetFree(uint32_t entry, uint32_t free) {
   entries_[entry].free = free;
   entries_[entry].stamp = ++stamp_;
-  queue_.emplace(int64_t{stamp_} - (int64_t{free} << 32), entry);
+  constexpr uint32_t kMost = 0x7fffffff;  // only what is damaged has more
+  queue_.emplace(int64_t{stamp_} - (int64_t{std::min(free, kMost)} << 32), entry);
 }
 
 std::array<uint32_t, 3> GrowingFront::AddTriangle(const std::array<uint32_t, 3>& vertices, const std::array<uint32_t, 3>& free) {

@@ -8,6 +8,7 @@
 #include "common/coefficient_sets.h"
 #include "common/compact_base_layout.h"
 #include "common/position_coding.h"
+#include "common/stream_layout.h"
 #include "common/valence_coding.h"
 #include "decoder/byte_cursor.h"
 #include "decoder/range_decoder.h"
@@ -51,6 +52,9 @@ StatusOr<CompactBaseHeader> ReadHeader(ByteCursor* cursor) {
   if (!(header.step > 0) || !std::isnormal(header.step)) return InvalidData("step of the compact base is not a positive number");
   for (int c = 0; c < 3; ++c) {
     if (!std::isfinite(header.offset[c])) return InvalidData("offset of the compact base is not finite");
+  }
+  for (const int32_t value : header.origin) {
+    if (value < -kMaxLatticeValue || value > kMaxLatticeValue) return InvalidData("the first vertex of the compact base is off the lattice");
   }
   if (header.extent_bits > kMaxExtentBits) return InvalidData("extent of the compact base is off the lattice");
   return header;

@@ -1006,6 +1006,7 @@ def decode_compact_base(data):
         step, *offset = struct.unpack("<4f", reader.take(16))
     extent_bits = reader.unsigned(1)
     origin = [reader.signed_varint() for _ in range(3)]
+    assert all(abs(value) <= LATTICE_LIMIT for value in origin)
     assert num_vertices >= 3 and num_borders <= num_vertices // 3 and extent_bits <= 25
     decoder = RangeDecoder(data[reader.at:])
     triangles = Connectivity(decoder, num_vertices, num_borders).decode()

@@ -14,6 +14,7 @@
 #include "common/symbol_coding.h"
 #include "decoder/range_decoder.h"
 #include "draco_ext/encoder/test_streams.h"
+#include "encoder/byte_writer.h"
 #include "encoder/compact_base_encoder.h"
 #include "encoder/quantizer.h"
 #include "encoder/range_encoder.h"
@@ -238,6 +239,19 @@ TEST(CompactBaseTest, KeepsToTheLimits) {
   EXPECT_EQ(DecodeCompactBase(coded.bytes, limits).status().code(), StatusCode::kLimitExceeded);
   limits = {100, 200};
   EXPECT_TRUE(DecodeCompactBase(coded.bytes, limits).ok());
+}
+
+// Found by fuzzing.
+TEST(CompactBaseTest, RefusesAFirstPointOffTheLattice) {
+  const Bytes good = EncodeCompactBase(Octahedron()).value().bytes;
+  constexpr ptrdiff_t kFirstPoint = 5;  // after two varints of one byte, the step and the extent
+  for (const int32_t value : {(1 << 24) - 1, 1 << 24, 1 - (1 << 24), -(1 << 24)}) {
+    Bytes bytes(good.begin(), good.begin() + kFirstPoint);
+    for (int c = 0; c < 3; ++c) PutSignedVarint(c == 1 ? value : 0, &bytes);
+    bytes.resize(bytes.size() + 100);
+    const std::string message = DecodeCompactBase(bytes, {}).status().message();
+    EXPECT_EQ(message.find("first vertex of the compact base is off the lattice") != std::string::npos, std::abs(value) == 1 << 24) << value << message;
+  }
 }
 
 TEST(CompactBaseTest, SurvivesTruncationAndEveryChangedByte) {
