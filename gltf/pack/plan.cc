@@ -297,8 +297,8 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
   if (chosen.ok()) least = chosen.value().bytes;
   std::string simplified_reason;
   if (context.options->simplify && !is_stream) {  // streams have tried a simplified surface themselves
-    StatusOr<FamilyCandidate> simplified = skin.status();
-    if (skin.ok()) simplified = Simplified(context, family, meter, everywhere);
+    StatusOr<FamilyCandidate> simplified =
+        skin.ok() ? Simplified(context, family, meter, everywhere) : StatusOr<FamilyCandidate>(skin.status());
     if (simplified.ok() && simplified.value().bytes < least) {
       chosen = std::move(simplified);
       least = chosen.value().bytes;
