@@ -87,7 +87,7 @@ StatusOr<std::optional<BaseSection>> FindBaseSection(Span<const uint8_t> bytes) 
 }
 
 std::optional<size_t> FindRefinement(Span<const uint8_t> stream, const TriangleMesh& base, size_t* from) {
-  constexpr std::array<uint8_t, 4> kMark = {'L', 'A', 'C', kRefinementVersion};
+  constexpr std::array<uint8_t, 3> kMark = {'L', 'A', 'C'};  // what follows, the header's reader judges
   constexpr int kMostOfAnotherBase = 16;  // each costs a pass over the base; nothing but bad intent makes more
   size_t first_open = stream.size() - std::min(stream.size(), kMark.size() - 1);
   int of_another_base = 0;

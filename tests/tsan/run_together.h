@@ -15,21 +15,21 @@ inline constexpr int kThreads = 4;  // more than there may be cores: a race does
 inline thread_local int depth = 0;  // of calls within calls
 inline std::atomic<int> most_threads{kThreads};
 
-// Calls work(0), ..., work(count - 1), each once, from several threads; from this one alone in calls within calls within calls.
+// Calls work(0), ..., work(count - 1), each once, from several threads; from this one alone in calls within calls within calls. Every thread has
+// its share, even where the first could do it all before the next one runs: no race goes unseen.
 template <typename Work>
 void RunTogether(size_t count, const Work& work) {
   constexpr int kDeepest = 2;
-  std::atomic<size_t> next{0};
-  const auto take = [&, inner = depth + 1] {
+  const size_t wanted = depth < kDeepest ? std::min<size_t>(count, static_cast<size_t>(most_threads.load())) : std::min<size_t>(count, 1);
+  const auto take = [&work, count, wanted, inner = depth + 1](size_t share) {
     const int outer = depth;
     depth = inner;
-    for (size_t i = next++; i < count; i = next++) work(i);
+    for (size_t i = share; i < count; i += wanted) work(i);
     depth = outer;
   };
   std::vector<std::thread> others;
-  const size_t wanted = depth < kDeepest ? std::min<size_t>(count, static_cast<size_t>(most_threads.load())) : 1;
-  for (size_t t = 1; t < wanted; ++t) others.emplace_back(take);
-  take();
+  for (size_t share = 1; share < wanted; ++share) others.emplace_back(take, share);
+  if (wanted > 0) take(0);
   for (std::thread& thread : others) thread.join();
 }
 
