@@ -122,7 +122,7 @@ class BaseWalk {
       worst = ratio;
       what = name;
     };
-    consider(errors.turned / targets_.turned, "turned triangles");
+    consider(errors.MostTurned() / targets_.turned, "turned triangles");
     for (size_t a = 0; a < errors.attributes.size(); ++a) {
       consider(errors.attributes[a].rms_99 / targets_.attributes[a], input_.original.mesh().attributes[a].name);
     }

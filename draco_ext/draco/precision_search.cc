@@ -145,7 +145,7 @@ class PrecisionSearch {
     double change = IsNear(last_.errors.distance, targets_.distance)
                         ? 1
                         : Allowed(remesh_.distance, targets_.distance) / Added(last_.errors.distance, remesh_.distance, targets_.distance);
-    if (last_.errors.turned > targets_.turned) change = std::min(change, std::clamp(targets_.turned / last_.errors.turned, kLeastTurned, kOtherTurned));
+    if (last_.errors.MostTurned() > targets_.turned) change = std::min(change, std::clamp(targets_.turned / last_.errors.MostTurned(), kLeastTurned, kOtherTurned));
     for (size_t a = 0; a < precision_.errors.size(); ++a) {
       constexpr double kMuch = 0.2;
       if (SlideShare(a) > kMuch) change = std::min(change, std::min(kMostSlide / SlideShare(a), 1.0));

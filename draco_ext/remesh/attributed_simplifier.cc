@@ -269,7 +269,8 @@ void AttributedSimplifier::Run() {
     FindValues(position);
     if (!KeepsTopology(kept, removed) || AnyTurnsOver(kept, removed, corners_u_, position) ||
         AnyTurnsOver(removed, kept, corners_v_, position) || AnyTextureTurnsOver(removed, corners_u_) ||
-        AnyTextureTurnsOver(kept, corners_v_)) {
+        AnyTextureTurnsOver(kept, corners_v_) || AnyTurnsFromNormals(kept, removed, corners_u_, position) ||
+        AnyTurnsFromNormals(removed, kept, corners_v_, position)) {
       blocked_.push_back(candidate);
       continue;
     }

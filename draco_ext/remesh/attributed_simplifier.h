@@ -34,7 +34,7 @@ class AttributedSimplifier {
   struct Channel {
     Channel(const MeshAttribute& attribute, const AttributeNodes& nodes, double weight, uint32_t num_vertices);
 
-    bool is_texture;
+    bool is_texture, is_normal;
     double scale;
     std::vector<Triangle> nodes;           // of the corners, kept up to date
     std::vector<uint32_t> node_of_vertex;  // of vertices where there is only one
@@ -65,6 +65,9 @@ class AttributedSimplifier {
   void FindValues(const Vec3d& position);
   bool AnyTurnsOver(uint32_t moved, uint32_t other, const std::vector<uint32_t>& corners, const Vec3d& to) const;
   bool AnyTextureTurnsOver(uint32_t other, const std::vector<uint32_t>& corners) const;
+  bool AnyTurnsFromNormals(uint32_t moved, uint32_t other, const std::vector<uint32_t>& corners, const Vec3d& to) const;
+  // Whether the value at a corner of the moved or the removed vertex is among those that the group's new value takes the place of.
+  bool IsOfGroup(const NodeGroup& group, uint32_t corner) const;
   void Collapse(uint32_t kept, uint32_t removed, const Vec3d& position);
   void JoinEdges(uint32_t kept, uint32_t removed);
   void JoinNodes();

@@ -15,6 +15,7 @@ constexpr uint32_t kNone = MeshAttribute::kNoValue;
 
 AttributedSimplifier::Channel::Channel(const MeshAttribute& attribute, const AttributeNodes& start, double weight, uint32_t num_vertices)
     : is_texture(attribute.kind == AttributeKind::kTextureCoordinates && attribute.components == 2),
+      is_normal(attribute.kind == AttributeKind::kNormal && attribute.components == 3),
       scale(weight),
       nodes(start.nodes),
       node_of_vertex(num_vertices, kNone),
@@ -115,6 +116,34 @@ void AttributedSimplifier::FindValues(const Vec3d& position) {
   }
 }
 
+bool AttributedSimplifier::IsOfGroup(const NodeGroup& group, uint32_t corner) const {
+  const auto first = group_members_.begin() + group.first;
+  return std::find(first, first + group.count, VertexOf(channels_[group.channel].nodes, corner)) != first + group.count;
+}
+
+// Whether a triangle at one of these corners would look away from its own normals: as a hole, where back faces are not drawn.
+bool AttributedSimplifier::AnyTurnsFromNormals(uint32_t moved, uint32_t other, const std::vector<uint32_t>& corners, const Vec3d& to) const {
+  for (const NodeGroup& group : groups_) {
+    const Channel& channel = channels_[group.channel];
+    if (!channel.is_normal) continue;
+    const auto value = [&](uint32_t node) {
+      const double* row = &channel.values[3 * size_t{node}];
+      return Vec3d{row[0], row[1], row[2]};
+    };
+    const double* row = &new_values_[group.value];
+    const Vec3d new_value{row[0], row[1], row[2]};
+    for (const uint32_t corner : corners) {
+      if (Has(corner / 3, other) || !IsOfGroup(group, corner)) continue;
+      const uint32_t next = NextCorner(corner), previous = PreviousCorner(corner);
+      const Vec3d &a = positions_[VertexOf(triangles_, next)], &b = positions_[VertexOf(triangles_, previous)];
+      const Vec3d others = value(VertexOf(channel.nodes, next)) + value(VertexOf(channel.nodes, previous));
+      if (Dot(Cross(a - to, b - to), others + new_value) >= 0) continue;
+      if (Dot(Cross(a - positions_[moved], b - positions_[moved]), others + value(VertexOf(channel.nodes, corner))) >= 0) return true;
+    }
+  }
+  return false;
+}
+
 // Whether a triangle at one of these corners, which get their values from new_values_, would be mirrored in a texture.
 bool AttributedSimplifier::AnyTextureTurnsOver(uint32_t other, const std::vector<uint32_t>& corners) const {
   for (const NodeGroup& group : groups_) {
@@ -122,9 +151,8 @@ bool AttributedSimplifier::AnyTextureTurnsOver(uint32_t other, const std::vector
     if (!channel.is_texture) continue;
     const double* value = &new_values_[group.value];
     for (const uint32_t corner : corners) {
+      if (Has(corner / 3, other) || !IsOfGroup(group, corner)) continue;
       const uint32_t node = VertexOf(channel.nodes, corner);
-      const auto first = group_members_.begin() + group.first;
-      if (Has(corner / 3, other) || std::find(first, first + group.count, node) == first + group.count) continue;
       const double* a = &channel.values[2 * size_t{VertexOf(channel.nodes, NextCorner(corner))}];
       const double* b = &channel.values[2 * size_t{VertexOf(channel.nodes, PreviousCorner(corner))}];
       const auto doubled_area = [&](const double* c) { return (a[0] - c[0]) * (b[1] - c[1]) - (a[1] - c[1]) * (b[0] - c[0]); };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "geometry/facing.h"
 #include "geometry/vertex_area_vectors.h"
 #include "remesh/mesh_fit.h"
 #include "remesh/wedge_mesh.h"
@@ -20,12 +21,14 @@ std::vector<VertexFreedom> FreedomOf(const AttributedMesh& mesh) {
   return freedom;
 }
 
-bool IsTurnedOver(const Triangle& t, const std::vector<Vec3f>& before, const std::vector<Vec3f>& after) {
+// facing: the sum of the normals at its corners, as an attribute; zero where there is none.
+bool IsTurnedOver(const Triangle& t, const Vec3d& facing, const std::vector<Vec3f>& before, const std::vector<Vec3f>& after) {
   const auto normal = [&](const std::vector<Vec3f>& p) {
     const Vec3d a = Vec3Cast<double>(p[t[0]]);
     return Cross(Vec3Cast<double>(p[t[1]]) - a, Vec3Cast<double>(p[t[2]]) - a);
   };
   const Vec3d old_normal = normal(before), new_normal = normal(after);
+  if (Dot(new_normal, facing) < 0 && Dot(old_normal, facing) >= 0) return true;
   return Dot(old_normal, new_normal) < 0.2 * Norm(old_normal) * Norm(new_normal);
 }
 
@@ -37,6 +40,7 @@ void FitBesideCurves(const FitTarget& target, int rounds, AttributedMesh* mesh) 
   const std::vector<VertexFreedom> freedom = FreedomOf(*mesh);
   std::vector<Vec3d> normals = VertexAreaVectors(surface);
   for (Vec3d& n : normals) n = Normalized(n);
+  const MeshAttribute* normals_attribute = FindNormals(*mesh);
   FitToSurface(target, MeshNeighbors(surface), RateModel{}, rounds, &surface);
   for (size_t v = 0; v < before.size(); ++v) {
     if (freedom[v] == VertexFreedom::kSurface) continue;
@@ -47,8 +51,9 @@ void FitBesideCurves(const FitTarget& target, int rounds, AttributedMesh* mesh) 
   constexpr int kRounds = 8;  // of taking back what the others make necessary; then everything
   for (int round = 0;; ++round) {
     bool any = false;
-    for (const Triangle& t : surface.triangles) {
-      if (!IsTurnedOver(t, before, surface.positions)) continue;
+    for (uint32_t f = 0; f < surface.triangles.size(); ++f) {
+      const Triangle& t = surface.triangles[f];
+      if (!IsTurnedOver(t, normals_attribute == nullptr ? Vec3d{} : FacingOf(*normals_attribute, f), before, surface.positions)) continue;
       any = true;
       for (const uint32_t v : t) surface.positions[v] = before[v];
     }

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/facing.h"
 #include "geometry/group_surface.h"
 #include "remesh/attribute_fit.h"
 #include "remesh/attributed_simplify.h"
@@ -193,7 +194,7 @@ ErrorTargets TargetsFor(const AttributedMesh& mesh, double distance, double texe
 }
 
 double WorstRatio(const SurfaceErrors& errors, const ErrorTargets& targets) {
-  double worst = std::max(errors.distance / targets.distance, errors.turned / targets.turned);
+  double worst = std::max(errors.distance / targets.distance, errors.MostTurned() / targets.turned);
   for (size_t a = 0; a < targets.attributes.size(); ++a) worst = std::max(worst, AttributeRatio(errors, targets, a));
   return worst;
 }
@@ -203,7 +204,7 @@ StatusOr<SurfaceErrorMeter> SurfaceErrorMeter::Create(const AttributedMesh& orig
   LACERTA_ASSIGN_OR_RETURN(AttributeDistanceMeter attributes, AttributeDistanceMeter::Create(original));
   constexpr uint64_t kFewest = 10'000, kPerTriangle = 16;  // small parts have no more to tell
   const uint64_t most_samples = std::max(kFewest, kPerTriangle * original.surface.triangles.size());
-  return SurfaceErrorMeter(std::move(distance), std::move(attributes), texture_size, most_samples);
+  return SurfaceErrorMeter(std::move(distance), std::move(attributes), texture_size, most_samples, ShareAgainstNormals(original));
 }
 
 StatusOr<SurfaceErrors> SurfaceErrorMeter::Measure(const AttributedMesh& mesh, uint64_t num_samples) const {
@@ -213,7 +214,7 @@ StatusOr<SurfaceErrors> SurfaceErrorMeter::Measure(const AttributedMesh& mesh, u
   options.num_samples = num_samples;
   options.texture_size = texture_size_;
   LACERTA_ASSIGN_OR_RETURN(const AttributeDistance attributes, attributes_.Measure(mesh, options));
-  SurfaceErrors errors{distance.Rms(), {}, attributes.backward_turned};
+  SurfaceErrors errors{distance.Rms(), {}, attributes.backward_turned, std::max(ShareAgainstNormals(mesh) - against_normals_, 0.0)};
   for (size_t a = 0; a < attributes.forward.size(); ++a) errors.attributes.push_back(attributes.Worst(a));
   return errors;
 }

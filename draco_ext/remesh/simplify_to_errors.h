@@ -2,6 +2,7 @@
 #ifndef LACERTA_REMESH_SIMPLIFY_TO_ERRORS_H_
 #define LACERTA_REMESH_SIMPLIFY_TO_ERRORS_H_
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -19,7 +20,10 @@ namespace lacerta {
 struct SurfaceErrors {
   double distance = 0;                     // two-sided RMS distance d_S, model units
   std::vector<AttributeError> attributes;  // the worse of both directions, for each attribute of the original
-  double turned = 0;                       // share of the surface's area that looks away from all of the original near it
+  double turned = 0;           // share of the surface's area that looks away from all of the original near it
+  double against_normals = 0;  // share that looks away from its own normals, beyond that of the original
+
+  double MostTurned() const { return std::max(turned, against_normals); }
 };
 
 // What is allowed. All > 0; infinity: anything will do.
@@ -27,7 +31,7 @@ struct ErrorTargets {
   double distance = 0;
   std::vector<double> attributes;  // bounds of AttributeError::rms_99, in its units
   std::vector<double> everywhere = {};  // bounds of AttributeError::rms; empty: none
-  double turned = std::numeric_limits<double>::infinity();  // bound of SurfaceErrors::turned
+  double turned = std::numeric_limits<double>::infinity();  // bound of SurfaceErrors::MostTurned
 };
 
 // For every texture coordinate `texels` on 99 % of the surface, for normals and tangents `degrees`; joint weights and colors 1/256, all
@@ -50,13 +54,16 @@ class SurfaceErrorMeter {
   double texture_size() const { return texture_size_; }
 
  private:
-  SurfaceErrorMeter(SurfaceDistanceMeter distance, AttributeDistanceMeter attributes, double texture_size, uint64_t most_samples)
-      : distance_(std::move(distance)), attributes_(std::move(attributes)), texture_size_(texture_size), most_samples_(most_samples) {}
+  SurfaceErrorMeter(SurfaceDistanceMeter distance, AttributeDistanceMeter attributes, double texture_size, uint64_t most_samples,
+                    double against_normals)
+      : distance_(std::move(distance)), attributes_(std::move(attributes)), texture_size_(texture_size), most_samples_(most_samples),
+        against_normals_(against_normals) {}
 
   SurfaceDistanceMeter distance_;
   AttributeDistanceMeter attributes_;
   double texture_size_;
   uint64_t most_samples_;
+  double against_normals_;  // ShareAgainstNormals of the original
 };
 
 struct SimplifyToErrorsOptions {

@@ -65,6 +65,7 @@ class FamilyRounder {
     }
     if (own == nullptr) return;
     own_distance_ = own->distance / targets_.distance;
+    own_turned_ = std::min(own->against_normals, kMostFlipped / 2);
     if (poses_.has_value()) own_poses_ = Ratio(*own, *poses_);
     for (size_t a = 0; a < attributes_.size(); ++a) {
       if (indices_[a].has_value()) own_attributes_[a] = Ratio(*own, *indices_[a]);
@@ -143,7 +144,7 @@ class FamilyRounder {
     int worse = 0;
     for (int p = FirstPositions(); p <= kMostLevel && worse < kPatience; p += kStride) {
       const RoundedPositions& positions = forecast_.Positions(p);
-      if (positions.flipped > kMostFlipped && p + kStride <= kMostLevel) continue;
+      if (positions.flipped + own_turned_ > kMostFlipped && p + kStride <= kMostLevel) continue;
       Levels levels{p, {}};
       double bits = num_positions_ * 3.0 * p / kLevelsPerBit;
       for (size_t a = 0; a < attributes_.size() && std::isfinite(bits); ++a) {
@@ -208,7 +209,7 @@ class FamilyRounder {
     const Levels& levels = trial->levels;
     trial->met = errors.ok() && WorstRatio(errors.value(), targets_) <= 1.0;
     // A group has lost its area, or too much has turned: no forecast tells how much finer that has to be.
-    if (!errors.ok() || errors.value().turned > targets_.turned) least_positions_ = levels.positions + 1;
+    if (!errors.ok() || errors.value().MostTurned() > targets_.turned) least_positions_ = levels.positions + 1;
     if (!errors.ok()) return;
     Report(errors.value(), &trial->family);
     Correct(errors.value(), levels, forecast_.Positions(levels.positions));
@@ -285,6 +286,7 @@ class FamilyRounder {
   RoundingForecast forecast_;
   // Errors that the primitives have before they are rounded, relative to the targets.
   double own_distance_ = 0.0;
+  double own_turned_ = 0.0;  // share of the area, away from its normals
   double own_poses_ = 0.0;
   std::vector<double> own_attributes_;
   std::vector<std::optional<size_t>> indices_;  // of attributes_ in the meter's original

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 #include "shapes/attributed_shapes.h"
 
@@ -60,6 +61,18 @@ TEST(SimplifyToErrorsTest, TheWorstRatioIsOfAllThatIsBounded) {
   EXPECT_EQ(WorstRatio(errors, targets), 0.75);
   targets.turned = 5e-4;
   EXPECT_EQ(WorstRatio(errors, targets), 2);
+  errors.against_normals = 2e-3;
+  EXPECT_EQ(WorstRatio(errors, targets), 4);
+}
+
+TEST(SimplifyToErrorsTest, OnlyWhatTurnsBesidesTheOriginalsOwnCounts) {
+  AttributedMesh mesh = WeldSoups({shapes::TexturedBox(4)}).value();  // 192 triangles of one size
+  std::swap(mesh.surface.triangles[20][0], mesh.surface.triangles[20][1]);
+  const auto meter = SurfaceErrorMeter::Create(mesh);
+  ASSERT_TRUE(meter.ok());
+  EXPECT_EQ(meter.value().Measure(mesh, 1000).value().against_normals, 0);
+  std::swap(mesh.surface.triangles[100][0], mesh.surface.triangles[100][1]);
+  EXPECT_NEAR(meter.value().Measure(mesh, 1000).value().against_normals, 1.0 / 192, 1e-6);
 }
 
 TEST(SimplifyToErrorsTest, TargetsAreByKind) {
