@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,6 +40,21 @@ double ErrorUnit(const MeshAttribute& attribute, double texture_size) {
   return is_direction && attribute.components >= 3 ? kRadiansPerDegree : 1;
 }
 
+// Share of the area that has the attribute, for each; 1 where there is no area.
+std::vector<double> SharesOf(const AttributedMesh& mesh) {
+  std::vector<double> areas(mesh.attributes.size(), 0.0);
+  double all = 0;
+  for (size_t f = 0; f < mesh.surface.triangles.size(); ++f) {
+    const Triangle& t = mesh.surface.triangles[f];
+    const Vec3d a = Vec3Cast<double>(mesh.surface.positions[t[0]]);
+    const double area = Norm(Cross(Vec3Cast<double>(mesh.surface.positions[t[1]]) - a, Vec3Cast<double>(mesh.surface.positions[t[2]]) - a));
+    all += area;
+    for (size_t i = 0; i < areas.size(); ++i) areas[i] += mesh.attributes[i].corners[f][0] != MeshAttribute::kNoValue ? area : 0;
+  }
+  for (double& area : areas) area = all > 0 && area > 0 ? area / all : 1;
+  return areas;
+}
+
 // Of one attribute, as WorstRatio of all.
 double AttributeRatio(const SurfaceErrors& errors, const ErrorTargets& targets, size_t attribute) {
   const double ratio = errors.attributes[attribute].rms_99 / targets.attributes[attribute];
@@ -70,39 +86,45 @@ class Search {
     return mesh;
   }
 
-  // The smallest surface of the sequence that meets the targets by the samples of the search; nothing where none does. guess: its size.
-  StatusOr<std::optional<Trial>> Smallest(const AttributedSimplification& sequence, double guess) const {
+  struct Found {
+    std::optional<Trial> smallest;        // that meets the targets; nothing where none does
+    std::optional<SurfaceErrors> missed;  // of the largest that does not
+  };
+
+  // The smallest surface of the sequence, of at most `most` triangles, by the samples of the search. guess: its size.
+  StatusOr<Found> Smallest(const AttributedSimplification& sequence, double guess, double most) const {
     constexpr int kMaxTrials = 7;
     constexpr double kGoodEnough = 0.97, kCloseEnough = 1.02;
-    double too_few = std::max(sequence.fewest_triangles(), 1u) - 0.5, enough = sequence.num_input_triangles() + 0.5;
+    double too_few = std::max(sequence.fewest_triangles(), 1u) - 0.5, enough = most + 0.5;
     double next = guess;
-    std::optional<Trial> best;
-    for (int i = 0; i < kMaxTrials && enough > kCloseEnough * too_few; ++i) {
+    Found found;
+    for (int i = 0; i < kMaxTrials && enough > std::max(kCloseEnough * too_few, too_few + 1); ++i) {
       const auto size = static_cast<uint32_t>(std::clamp(next, too_few + 0.5, std::max(enough - 0.5, too_few + 0.5)));
       LACERTA_ASSIGN_OR_RETURN(Trial trial, Measured(Fitted(sequence, size), options_.num_search_samples));
       const double ratio = trial.ratio;
       if (ratio <= 1) {
         enough = std::min<double>(size, static_cast<double>(trial.mesh.surface.triangles.size()));
-        best = std::move(trial);
+        found.smallest = std::move(trial);
         if (ratio >= kGoodEnough || enough - 1 < too_few) break;
       } else {
         too_few = size;
+        found.missed = std::move(trial.errors);
       }
       // Errors go about as one over the number of triangles; where that leads out of the bracket or nowhere, its middle.
       next = size * std::clamp(1.01 * ratio, 0.2, 4.0);
       if (i >= 4 || next <= too_few || next >= enough) next = std::sqrt(std::max(too_few, 1.0) * enough);
     }
-    return best;
+    return found;
   }
 
   // Few samples may have been too kind: what counts is measured with more, and given more triangles until it holds.
-  Status Confirm(const std::vector<double>& weights, Trial* trial) const {
+  Status Confirm(const AttributedSimplification& sequence, Trial* trial) const {
     LACERTA_ASSIGN_OR_RETURN(*trial, Measured(std::move(trial->mesh), options_.num_samples));
     if (trial->ratio <= 1) return Status();
-    const AttributedSimplification sequence(original_, weights);
+    constexpr double kMostGrowth = 1.2;  // at a time: errors may jump
     for (double margin = 1.01; trial->ratio > 1; margin *= 1.01) {
       const auto triangles = static_cast<double>(trial->mesh.surface.triangles.size());
-      const double size = std::max(triangles * trial->ratio * margin, triangles + 1);
+      const double size = std::max(triangles * std::min(trial->ratio, kMostGrowth) * margin, triangles + 1);
       const uint32_t all = sequence.num_input_triangles();
       const uint32_t wanted = size < all ? static_cast<uint32_t>(size) : all;
       LACERTA_ASSIGN_OR_RETURN(*trial, Measured(Fitted(sequence, wanted), options_.num_samples));
@@ -114,27 +136,38 @@ class Search {
   StatusOr<Trial> Measured(AttributedMesh mesh, uint64_t num_samples) const {
     Trial trial;
     LACERTA_ASSIGN_OR_RETURN(trial.errors, meter_.Measure(mesh, num_samples));
+    ErrorTargets others = targets_;
+    others.turned = std::numeric_limits<double>::infinity();
+    // What is turned is a handful of samples: more of them where nothing else is against it.
+    if (num_samples < options_.num_samples && trial.errors.turned > targets_.turned && WorstRatio(trial.errors, others) <= 1) {
+      LACERTA_ASSIGN_OR_RETURN(trial.errors, meter_.Measure(mesh, options_.num_samples));
+    }
     trial.ratio = WorstRatio(trial.errors, targets_);
     trial.mesh = std::move(mesh);
     return trial;
   }
 
+  // Costs of collapses are sums over the area, targets means over the part of it that has the attribute.
   std::vector<double> FirstWeights() const {
+    const std::vector<double> shares = SharesOf(original_);
     std::vector<double> weights;
     for (size_t a = 0; a < original_.attributes.size(); ++a) {
       const double allowed = targets_.attributes[a] * ErrorUnit(original_.attributes[a], meter_.texture_size());
-      weights.push_back(LimitWeight(ShapeTarget() / meter_.diagonal() / allowed));
+      weights.push_back(LimitWeight(ShapeTarget() / meter_.diagonal() / allowed / std::sqrt(shares[a])));
     }
     return weights;
   }
 
-  // More for what is nearer to its target than the positions, less for what is farther.
-  void Reweight(const SurfaceErrors& errors, std::vector<double>* weights) const {
-    constexpr double kLeast = 0.05, kExponent = 0.7;
-    const double position = std::max(errors.distance / ShapeTarget(), kLeast);
+  // More for what is nearer to its target than the positions, less for what is farther, at the size that is nearest to the targets.
+  void Reweight(const Found& found, std::vector<double>* weights) const {
+    constexpr double kLeast = 0.05;
+    const auto off = [&](const SurfaceErrors& errors) { return std::fabs(std::log(std::max(WorstRatio(errors, targets_), 1e-9))); };
+    const SurfaceErrors& met = found.smallest->errors;
+    const SurfaceErrors& nearest = found.missed && off(*found.missed) < off(met) ? *found.missed : met;
+    const double position = std::max(nearest.distance / ShapeTarget(), kLeast);
     for (size_t a = 0; a < weights->size(); ++a) {
-      const double own = std::max(AttributeRatio(errors, targets_, a), kLeast);
-      (*weights)[a] = LimitWeight((*weights)[a] * std::pow(own / position, kExponent));
+      const double own = std::max(AttributeRatio(nearest, targets_, a), kLeast);
+      (*weights)[a] = LimitWeight((*weights)[a] * own / position);
     }
   }
 
@@ -204,11 +237,15 @@ StatusOr<SurfaceErrorMeter> SurfaceErrorMeter::Create(const AttributedMesh& orig
   LACERTA_ASSIGN_OR_RETURN(AttributeDistanceMeter attributes, AttributeDistanceMeter::Create(original));
   constexpr uint64_t kFewest = 10'000, kPerTriangle = 16;  // small parts have no more to tell
   const uint64_t most_samples = std::max(kFewest, kPerTriangle * original.surface.triangles.size());
-  return SurfaceErrorMeter(std::move(distance), std::move(attributes), texture_size, most_samples, ShareAgainstNormals(original));
+  const std::vector<double> shares = SharesOf(original);
+  const double least_share = shares.empty() ? 1.0 : *std::min_element(shares.begin(), shares.end());
+  return SurfaceErrorMeter(std::move(distance), std::move(attributes), texture_size, most_samples, ShareAgainstNormals(original), least_share);
 }
 
 StatusOr<SurfaceErrors> SurfaceErrorMeter::Measure(const AttributedMesh& mesh, uint64_t num_samples) const {
-  num_samples = std::min(num_samples, most_samples_);
+  // What only a part of the surface has must not be told by a handful of samples.
+  constexpr double kFewest = 3000, kMost = 50'000;
+  num_samples = std::min(std::max(num_samples, static_cast<uint64_t>(std::min(kFewest / least_share_, kMost))), most_samples_);
   LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, distance_.Measure(mesh.surface, SurfaceDistanceOptions::RmsOnly(num_samples)));
   AttributeDistanceOptions options;
   options.num_samples = num_samples;
@@ -223,24 +260,26 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
                                              const SimplifyToErrorsOptions& options) {
   LACERTA_RETURN_IF_ERROR(CheckTargets(original, targets));
   const Search search(original, meter, targets, options);
-  std::vector<double> weights = search.FirstWeights(), best_weights;
+  constexpr double kWorthwhile = 0.98;  // of the size, for another weighting
+  std::vector<double> weights = search.FirstWeights();
   std::optional<Trial> best;
-  double guess = 0.3 * static_cast<double>(original.surface.triangles.size());
+  std::unique_ptr<const AttributedSimplification> best_sequence;
+  const auto all = static_cast<double>(original.surface.triangles.size());
+  double guess = 0.3 * all, most = all;
   for (int i = 0; i < std::max(options.num_weightings, 1); ++i) {
-    const AttributedSimplification sequence(original, weights);
-    LACERTA_ASSIGN_OR_RETURN(std::optional<Trial> trial, search.Smallest(sequence, guess));
-    if (!trial) break;
-    guess = static_cast<double>(trial->mesh.surface.triangles.size());
-    const std::vector<double> tried = weights;
-    search.Reweight(trial->errors, &weights);
-    if (best && trial->mesh.surface.triangles.size() >= best->mesh.surface.triangles.size()) continue;
-    best = std::move(trial);
-    best_weights = tried;
+    auto sequence = std::make_unique<const AttributedSimplification>(original, weights);
+    LACERTA_ASSIGN_OR_RETURN(auto found, search.Smallest(*sequence, guess, most));
+    if (!found.smallest) break;
+    search.Reweight(found, &weights);
+    // The next weights have to show at once that they are better.
+    guess = most = kWorthwhile * static_cast<double>(found.smallest->mesh.surface.triangles.size());
+    best = std::move(found.smallest);
+    best_sequence = std::move(sequence);
   }
   if (!best) {
     LACERTA_ASSIGN_OR_RETURN(best, search.Measured(original, options.num_samples));
   } else {
-    LACERTA_RETURN_IF_ERROR(search.Confirm(best_weights, &*best));
+    LACERTA_RETURN_IF_ERROR(search.Confirm(*best_sequence, &*best));
   }
   return SimplifiedSurface{std::move(best->mesh), std::move(best->errors), best->ratio <= 1};
 }

@@ -47,7 +47,7 @@ class SurfaceErrorMeter {
   // Copies the original. Fails as SurfaceDistanceMeter and AttributeDistanceMeter do.
   static StatusOr<SurfaceErrorMeter> Create(const AttributedMesh& original, double texture_size = 1024);
 
-  // num_samples: on each of the two surfaces, fewer where the original is small.
+  // num_samples: on each of the two surfaces, fewer where the original is small, more where a small part of it has an attribute.
   StatusOr<SurfaceErrors> Measure(const AttributedMesh& mesh, uint64_t num_samples) const;
 
   double diagonal() const { return distance_.diagonal(); }
@@ -55,21 +55,22 @@ class SurfaceErrorMeter {
 
  private:
   SurfaceErrorMeter(SurfaceDistanceMeter distance, AttributeDistanceMeter attributes, double texture_size, uint64_t most_samples,
-                    double against_normals)
+                    double against_normals, double least_share)
       : distance_(std::move(distance)), attributes_(std::move(attributes)), texture_size_(texture_size), most_samples_(most_samples),
-        against_normals_(against_normals) {}
+        against_normals_(against_normals), least_share_(least_share) {}
 
   SurfaceDistanceMeter distance_;
   AttributeDistanceMeter attributes_;
   double texture_size_;
   uint64_t most_samples_;
   double against_normals_;  // ShareAgainstNormals of the original
+  double least_share_;      // of the area that has an attribute
 };
 
 struct SimplifyToErrorsOptions {
   uint64_t num_samples = 100'000;        // of the measure that the result is held to
   uint64_t num_search_samples = 10'000;  // while the size is looked for
-  int num_weightings = 2;                // how often the weights of attributes are set anew by what limited the size
+  int num_weightings = 5;                // at most: weights of attributes are set anew by what limited the size while that pays
   // Makes of a fitted surface what will be stored of it, before it is measured: for values that something else follows from.
   std::function<void(AttributedMesh*)> finish = nullptr;
 };

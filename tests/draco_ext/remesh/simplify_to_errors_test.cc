@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -48,6 +50,28 @@ TEST(SimplifyToErrorsTest, WhatCannotBeSimplifiedComesBack) {
 TEST(SimplifyToErrorsTest, GoesToTheEndWhereTargetsAllow) {
   const AttributedMesh mesh = WeldSoups({shapes::TexturedBox(6)}).value();
   EXPECT_EQ(Simplify(mesh, {1e-3, {1, 1}}).mesh.surface.triangles.size(), 12u);
+}
+
+// A large bump whose texture is plain beside a small patch with a texture that is bent: its error is a mean over the patch alone.
+TEST(SimplifyToErrorsTest, WhatASmallPartHasDoesNotHoldTheRest) {
+  const VertexSoup large = shapes::TexturedGrid(60, 60, 0.3f);
+  VertexSoup patch = shapes::TexturedGrid(20, 20);
+  for (Vec3f& p : patch.positions) p = p * 0.1f + Vec3f{2, 0, 0};
+  patch.attributes[0].name = "TEXCOORD_1";
+  for (size_t i = 0; i < patch.attributes[0].values.size(); i += 2) {
+    float& u = patch.attributes[0].values[i];
+    u += 0.1f * std::sin(9 * u);
+  }
+  const AttributedMesh mesh = WeldSoups({large, patch}).value(), alone = WeldSoups({large}).value();
+  const ErrorTargets targets{5e-4, {1, 2, 1}}, of_large{5e-4, {1, 2}};
+  const SimplifiedSurface both = Simplify(mesh, targets);
+  EXPECT_LE(WorstRatio(both.errors, targets), 1);
+  const auto of_patch = static_cast<size_t>(std::count(both.mesh.groups.begin(), both.mesh.groups.end(), 1u));
+  const size_t rest = both.mesh.groups.size() - of_patch, wanted = Simplify(alone, of_large).mesh.surface.triangles.size();
+  EXPECT_GT(of_patch, 20u);
+  EXPECT_LT(of_patch, 800u);
+  EXPECT_GT(2 * rest, wanted);
+  EXPECT_LT(rest, 3 * wanted);  // 3.9 times where weights do not know of the share
 }
 
 TEST(SimplifyToErrorsTest, TheWorstRatioIsOfAllThatIsBounded) {
