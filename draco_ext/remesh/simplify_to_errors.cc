@@ -5,10 +5,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 
-#include "geometry/facing.h"
 #include "geometry/group_surface.h"
 #include "remesh/attribute_fit.h"
 #include "remesh/attributed_simplify.h"
@@ -20,45 +18,11 @@ namespace {
 constexpr int kFitRounds = 2;
 constexpr double kRadiansPerDegree = 0.017453292519943295;
 
-double RangeOf(const MeshAttribute& attribute) {
-  double range = 0;
-  for (uint32_t c = 0; c < attribute.components; ++c) {
-    float low = std::numeric_limits<float>::infinity(), high = -low;
-    for (size_t i = c; i < attribute.values.size(); i += attribute.components) {
-      low = std::min(low, attribute.values[i]);
-      high = std::max(high, attribute.values[i]);
-    }
-    range = std::max(range, static_cast<double>(high) - static_cast<double>(low));
-  }
-  return range;
-}
-
 // One unit of AttributeError in units of the attribute.
 double ErrorUnit(const MeshAttribute& attribute, double texture_size) {
   if (attribute.kind == AttributeKind::kTextureCoordinates) return 1 / texture_size;
   const bool is_direction = IsDirection(attribute.kind);
   return is_direction && attribute.components >= 3 ? kRadiansPerDegree : 1;
-}
-
-// Share of the area that has the attribute, for each; 1 where there is no area.
-std::vector<double> SharesOf(const AttributedMesh& mesh) {
-  std::vector<double> areas(mesh.attributes.size(), 0.0);
-  double all = 0;
-  for (size_t f = 0; f < mesh.surface.triangles.size(); ++f) {
-    const Triangle& t = mesh.surface.triangles[f];
-    const Vec3d a = Vec3Cast<double>(mesh.surface.positions[t[0]]);
-    const double area = Norm(Cross(Vec3Cast<double>(mesh.surface.positions[t[1]]) - a, Vec3Cast<double>(mesh.surface.positions[t[2]]) - a));
-    all += area;
-    for (size_t i = 0; i < areas.size(); ++i) areas[i] += mesh.attributes[i].corners[f][0] != MeshAttribute::kNoValue ? area : 0;
-  }
-  for (double& area : areas) area = all > 0 && area > 0 ? area / all : 1;
-  return areas;
-}
-
-// Of one attribute, as WorstRatio of all.
-double AttributeRatio(const SurfaceErrors& errors, const ErrorTargets& targets, size_t attribute) {
-  const double ratio = errors.attributes[attribute].rms_99 / targets.attributes[attribute];
-  return targets.everywhere.empty() ? ratio : std::max(ratio, errors.attributes[attribute].rms / targets.everywhere[attribute]);
 }
 
 struct Trial {
@@ -149,7 +113,7 @@ class Search {
 
   // Costs of collapses are sums over the area, targets means over the part of it that has the attribute.
   std::vector<double> FirstWeights() const {
-    const std::vector<double> shares = SharesOf(original_);
+    const std::vector<double> shares = AttributeShares(original_);
     std::vector<double> weights;
     for (size_t a = 0; a < original_.attributes.size(); ++a) {
       const double allowed = targets_.attributes[a] * ErrorUnit(original_.attributes[a], meter_.texture_size());
@@ -201,60 +165,6 @@ Status CheckTargets(const AttributedMesh& mesh, const ErrorTargets& targets) {
 }
 
 }  // namespace
-
-ErrorTargets TargetsFor(const AttributedMesh& mesh, double distance, double texels, double degrees) {
-  ErrorTargets targets;
-  targets.distance = distance;
-  for (const MeshAttribute& attribute : mesh.attributes) {
-    switch (attribute.kind) {
-      case AttributeKind::kTextureCoordinates:
-        targets.attributes.push_back(texels);
-        break;
-      case AttributeKind::kNormal:
-      case AttributeKind::kTangent:
-        targets.attributes.push_back(degrees);
-        break;
-      case AttributeKind::kColor:
-      case AttributeKind::kWeights:
-        targets.attributes.push_back(1.0 / 256);
-        break;
-      case AttributeKind::kGeneric:
-        targets.attributes.push_back(std::max(1e-3 * RangeOf(attribute), 1e-12));
-        break;
-    }
-  }
-  return targets;
-}
-
-double WorstRatio(const SurfaceErrors& errors, const ErrorTargets& targets) {
-  double worst = std::max(errors.distance / targets.distance, errors.MostTurned() / targets.turned);
-  for (size_t a = 0; a < targets.attributes.size(); ++a) worst = std::max(worst, AttributeRatio(errors, targets, a));
-  return worst;
-}
-
-StatusOr<SurfaceErrorMeter> SurfaceErrorMeter::Create(const AttributedMesh& original, double texture_size) {
-  LACERTA_ASSIGN_OR_RETURN(SurfaceDistanceMeter distance, SurfaceDistanceMeter::Create(original.surface));
-  LACERTA_ASSIGN_OR_RETURN(AttributeDistanceMeter attributes, AttributeDistanceMeter::Create(original));
-  constexpr uint64_t kFewest = 10'000, kPerTriangle = 16;  // small parts have no more to tell
-  const uint64_t most_samples = std::max(kFewest, kPerTriangle * original.surface.triangles.size());
-  const std::vector<double> shares = SharesOf(original);
-  const double least_share = shares.empty() ? 1.0 : *std::min_element(shares.begin(), shares.end());
-  return SurfaceErrorMeter(std::move(distance), std::move(attributes), texture_size, most_samples, ShareAgainstNormals(original), least_share);
-}
-
-StatusOr<SurfaceErrors> SurfaceErrorMeter::Measure(const AttributedMesh& mesh, uint64_t num_samples) const {
-  // What only a part of the surface has must not be told by a handful of samples.
-  constexpr double kFewest = 3000, kMost = 50'000;
-  num_samples = std::min(std::max(num_samples, static_cast<uint64_t>(std::min(kFewest / least_share_, kMost))), most_samples_);
-  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, distance_.Measure(mesh.surface, SurfaceDistanceOptions::RmsOnly(num_samples)));
-  AttributeDistanceOptions options;
-  options.num_samples = num_samples;
-  options.texture_size = texture_size_;
-  LACERTA_ASSIGN_OR_RETURN(const AttributeDistance attributes, attributes_.Measure(mesh, options));
-  SurfaceErrors errors{distance.Rms(), {}, attributes.backward_turned, std::max(ShareAgainstNormals(mesh) - against_normals_, 0.0)};
-  for (size_t a = 0; a < attributes.forward.size(); ++a) errors.attributes.push_back(attributes.Worst(a));
-  return errors;
-}
 
 StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
                                              const SimplifyToErrorsOptions& options) {

@@ -90,7 +90,7 @@ StatusOr<std::vector<Instance>> CollectInstances(const GltfDocument& document) {
   const uint64_t scene_index = AsIndex(Find(document.json, "scene")).value_or(0);
   const Json* scene = FindElement(document.json, "scenes", scene_index);
   if (scene == nullptr) {
-    for (uint64_t m = 0; m < ArraySize(document.json, "meshes"); ++m) instances.push_back({m, kIdentity});
+    for (uint64_t m = 0; m < ArraySize(document.json, "meshes"); ++m) instances.push_back({m});
     return instances;
   }
   std::vector<std::pair<uint64_t, Transform>> stack;
@@ -112,7 +112,7 @@ StatusOr<std::vector<Instance>> CollectInstances(const GltfDocument& document) {
       if (mesh_index >= ArraySize(document.json, "meshes")) {
         return InvalidData("node " + std::to_string(index) + " shows a mesh that does not exist");
       }
-      instances.push_back({mesh_index, transform});
+      instances.push_back({mesh_index, transform, AsIndex(Find(*node, "skin"))});
     }
     PushNodes(*node, "children", transform, &stack);
   }

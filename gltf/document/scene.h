@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "document/gltf_document.h"
@@ -34,7 +35,8 @@ Transform LocalTransform(const Json& node);
 
 struct Instance {
   uint64_t mesh = 0;
-  Transform transform = kIdentity;
+  Transform transform = kIdentity;  // of the node; what a skin moves stands elsewhere
+  std::optional<uint64_t> skin = std::nullopt;
 };
 
 // The meshes that the default scene shows (the first scene where none is named; every mesh once where there is no

@@ -118,6 +118,8 @@ std::vector<bool> JointsOf(const GltfDocument& document) {
 
 }  // namespace
 
+ScenePose RestPose(const GltfDocument& document) { return Nodes(document).AtRest(); }
+
 std::vector<ScenePose> ScenePoses(const GltfDocument& document) {
   const Nodes nodes(document);
   std::vector<ScenePose> poses = {nodes.AtRest()};

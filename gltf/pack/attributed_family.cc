@@ -1,9 +1,11 @@
 #include "pack/attributed_family.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -19,13 +21,15 @@ constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 
 bool BeginsWith(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
 
-std::optional<AttributeKind> KindOf(const Attribute& attribute) {
+bool IsCustom(const std::string& name) { return BeginsWith(name, "_"); }
+
+std::optional<AttributeKind> KindOf(const Attribute& attribute, const std::set<std::string>& custom) {
   const std::string& name = attribute.name;
   if (BeginsWith(name, "TEXCOORD_") && attribute.data.components == 2) return AttributeKind::kTextureCoordinates;
   if (BeginsWith(name, "COLOR_")) return AttributeKind::kColor;
   if (name == "NORMAL" && attribute.data.components == 3) return AttributeKind::kNormal;
   if (name == "TANGENT" && attribute.data.components == 4) return AttributeKind::kTangent;
-  if (IsTargetAttribute(name)) return AttributeKind::kGeneric;
+  if (IsTargetAttribute(name) || custom.count(name) > 0) return AttributeKind::kGeneric;
   return std::nullopt;
 }
 
@@ -42,14 +46,14 @@ StatusOr<VertexSoup::Attribute> PosesOf(const Primitive& primitive, const Skin& 
 }
 
 StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const TexelScale& scale,
-                            OtherAttributes others, const Skin* skin) {
+                            OtherAttributes others, const Skin* skin, const std::set<std::string>& custom) {
   VertexSoup soup;
   TriangleMesh surface = Surface(primitive);
   soup.positions = std::move(surface.positions);
   soup.triangles = std::move(surface.triangles);
   for (const Attribute& attribute : primitive.attributes) {
     if (attribute.name == "POSITION" || (skin != nullptr && IsSkinAttribute(attribute.name))) continue;
-    const std::optional<AttributeKind> kind = KindOf(attribute);
+    const std::optional<AttributeKind> kind = KindOf(attribute, custom);
     if (!kind.has_value() && others == OtherAttributes::kLeaveOut) continue;
     if (!kind.has_value()) return Unsupported("has the attribute " + attribute.name + ", which is not simplified");
     VertexSoup::Attribute values{SoupName(attribute, member, scale), *kind, attribute.data.components, {}};
@@ -77,20 +81,47 @@ std::string SoupName(const Attribute& attribute, size_t member, const TexelScale
   return attribute.name + "/" + std::to_string(scale(member, SetOf(attribute.name)));
 }
 
+std::set<std::string> CustomAttributesOf(const std::vector<const Primitive*>& primitives) {
+  constexpr uint32_t kMostComponents = 4;
+  std::map<std::string, bool> found;  // whether they mean something between vertices
+  std::set<std::string> exact;
+  for (const Primitive* primitive : primitives) {
+    for (const Attribute& attribute : primitive->attributes) {
+      if (!IsCustom(attribute.name)) continue;
+      const AccessorData& data = attribute.data;
+      bool is_usable = data.type == ComponentType::kFloat && data.components <= kMostComponents, has_fractions = false;
+      for (uint64_t v = 0; v < data.count && is_usable; ++v) {
+        for (uint32_t c = 0; c < data.components; ++c) {
+          const float x = data.Float(v, c);
+          is_usable = is_usable && std::isfinite(x);
+          has_fractions = has_fractions || x != std::floor(x);
+        }
+      }
+      if (!is_usable) exact.insert(attribute.name);
+      found[attribute.name] = found[attribute.name] || has_fractions;
+    }
+  }
+  std::set<std::string> result;
+  for (const auto& [name, has_fractions] : found) {
+    if (has_fractions && exact.count(name) == 0) result.insert(name);
+  }
+  return result;
+}
+
 StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
-                                          OtherAttributes others, const Skin* skin) {
+                                          OtherAttributes others, const Skin* skin, const std::set<std::string>& custom) {
   std::vector<VertexSoup> soups;
   for (size_t m = 0; m < primitives.size(); ++m) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale, others, skin));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale, others, skin, custom));
     soups.push_back(std::move(soup));
   }
   return WeldSoups(soups);
 }
 
-bool HasOtherAttributes(const std::vector<const Primitive*>& primitives, const Skin* skin) {
+bool HasOtherAttributes(const std::vector<const Primitive*>& primitives, const Skin* skin, const std::set<std::string>& custom) {
   for (const Primitive* primitive : primitives) {
     for (const Attribute& attribute : primitive->attributes) {
-      const bool is_other = attribute.name != "POSITION" && !KindOf(attribute).has_value();
+      const bool is_other = attribute.name != "POSITION" && !KindOf(attribute, custom).has_value();
       if (is_other && (skin == nullptr || !IsSkinAttribute(attribute.name))) return true;
     }
   }
@@ -116,6 +147,9 @@ ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const A
       bound_everywhere(error);
     } else if (IsTargetPosition(attribute.name)) {
       bound_everywhere(kShareOfTargets * error);
+    } else if (IsCustom(attribute.name)) {
+      const double range = std::max(RangeOf(attribute), static_cast<double>(std::numeric_limits<float>::min()));
+      result.attributes.push_back(targets.custom * range * std::sqrt(attribute.components));
     } else if (IsTargetAttribute(attribute.name)) {
       result.attributes.push_back(targets.normal_degrees * kRadiansPerDegree);
     } else {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,11 @@ using TexelScale = std::function<double(size_t member, uint64_t set)>;
 // its own target.
 std::string SoupName(const Attribute& attribute, size_t member, const TexelScale& scale);
 
-// What becomes of attributes that have no meaning between vertices (joints without a skin, application attributes).
+// Application attributes that mean something between vertices: floats in up to four finite components wherever the primitives have
+// them, not all of them whole numbers, which may name something.
+std::set<std::string> CustomAttributesOf(const std::vector<const Primitive*>& primitives);
+
+// What becomes of attributes that have no meaning between vertices (joints without a skin, application attributes but those of `custom`).
 enum class OtherAttributes { kRefuse, kLeaveOut };
 
 // In place of joints and weights: where the surface is in every pose of the skin, so that a difference is a distance in mesh
@@ -33,10 +38,12 @@ inline constexpr const char* kPosesName = "POSES";
 // Primitive m becomes group m. Fails with kUnsupported on attributes to refuse, and like WeldSoups and, where there is a skin,
 // ReadInfluences.
 StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
-                                          OtherAttributes others = OtherAttributes::kRefuse, const Skin* skin = nullptr);
+                                          OtherAttributes others = OtherAttributes::kRefuse, const Skin* skin = nullptr,
+                                          const std::set<std::string>& custom = {});
 
 // Whether there are any of those.
-bool HasOtherAttributes(const std::vector<const Primitive*>& primitives, const Skin* skin = nullptr);
+bool HasOtherAttributes(const std::vector<const Primitive*>& primitives, const Skin* skin = nullptr,
+                        const std::set<std::string>& custom = {});
 
 // The targets in the units of SurfaceErrorMeter with textures of `texel_side`; `error` in mesh units, of the surface and, over
 // the whole of it, of its poses; offsets of morph targets get a share of it. No more than one part in two thousand of the area may look away from the original.

@@ -5,11 +5,13 @@
 #include <cstring>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
-#include "document/scene.h"
+#include "document/scene_poses.h"
 #include "lacerta/surface_distance.h"
+#include "pack/find_skin.h"
 
 namespace lacerta {
 namespace {
@@ -39,6 +41,19 @@ std::vector<std::string> Stances(const std::vector<Instance>& instances, uint64_
     stances.emplace_back(reinterpret_cast<const char*>(of_mesh.data()), of_mesh.size() * sizeof(Transform));
   }
   return stances;
+}
+
+// glTF ignores the node's transform of what a skin moves: it stands where the joints put it.
+void PlaceBySkins(const GltfDocument& document, std::vector<Instance>* instances) {
+  std::map<uint64_t, std::optional<Transform>> placements;
+  std::optional<ScenePose> rest;
+  for (Instance& instance : *instances) {
+    if (!instance.skin.has_value()) continue;
+    if (!rest.has_value()) rest = RestPose(document);
+    auto known = placements.find(*instance.skin);
+    if (known == placements.end()) known = placements.emplace(*instance.skin, PlacementBySkin(document, *instance.skin, *rest)).first;
+    if (known->second.has_value()) instance.transform = *known->second;
+  }
 }
 
 struct PlacedPosition {
@@ -89,7 +104,8 @@ struct Box {
 }  // namespace
 
 StatusOr<Families> FindFamilies(const GltfDocument& document, const std::vector<PlacedSurface>& surfaces) {
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<Instance> instances, CollectInstances(document));
+  LACERTA_ASSIGN_OR_RETURN(std::vector<Instance> instances, CollectInstances(document));
+  PlaceBySkins(document, &instances);
   const uint64_t num_meshes = ArraySize(document.json, "meshes");
   const std::vector<std::string> stances = Stances(instances, num_meshes);
   UnionFind meshes(static_cast<size_t>(num_meshes));

@@ -15,7 +15,8 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
                          uint64_t texel_side, TexelScale texels_per_unit, const Skin* skin)
     : primitives_(std::move(primitives)), error_(error), attribute_targets_(targets),
       texels_per_unit_(std::move(texels_per_unit)), skin_(skin) {
-  StatusOr<AttributedMesh> original = ToAttributedMesh(primitives_, texels_per_unit_, OtherAttributes::kLeaveOut, skin_);
+  if (targets.custom > 0.0) custom_ = CustomAttributesOf(primitives_);
+  StatusOr<AttributedMesh> original = ToAttributedMesh(primitives_, texels_per_unit_, OtherAttributes::kLeaveOut, skin_, custom_);
   status_ = original.status();
   if (!original.ok()) return;
   StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(original.value(), static_cast<double>(texel_side));
@@ -33,12 +34,12 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
   original_ = std::move(original).value();
   meter_ = std::move(meter).value();
   targets_ = FamilyTargets(original_, error, targets, texel_side);
-  leaves_out_ = HasOtherAttributes(primitives_, skin_);
+  leaves_out_ = HasOtherAttributes(primitives_, skin_, custom_);
 }
 
 StatusOr<SurfaceErrors> FamilyMeter::Measure(const std::vector<const Primitive*>& stored) const {
   LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh,
-                           ToAttributedMesh(stored, texels_per_unit_, OtherAttributes::kLeaveOut, skin_));
+                           ToAttributedMesh(stored, texels_per_unit_, OtherAttributes::kLeaveOut, skin_, custom_));
   LACERTA_ASSIGN_OR_RETURN(SurfaceErrors errors, meter_->Measure(mesh, kSamples));
   if (skin_ == nullptr) return errors;
   AttributeError& poses = errors.attributes[*IndexOf(kPosesName)];

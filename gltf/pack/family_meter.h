@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ class FamilyMeter {
   const AttributedMesh& original() const { return original_; }  // without what ToAttributedMesh leaves out
   const SurfaceErrorMeter& meter() const { return *meter_; }
   const ErrorTargets& targets() const { return targets_; }
-  bool leaves_out() const { return leaves_out_; }  // joints without a skin, application attributes
+  bool leaves_out() const { return leaves_out_; }  // joints without a skin, application attributes that stay exact
+  const std::set<std::string>& custom() const { return custom_; }  // application attributes that do not
 
   // The targets with bounds `everywhere` (as in ErrorTargets; may be empty) besides those that they have.
   ErrorTargets TargetsWith(const std::vector<double>& everywhere) const;
@@ -66,6 +68,7 @@ class FamilyMeter {
   std::vector<SurfaceDistanceMeter> poses_;  // of the skin's
   ErrorTargets targets_;
   bool leaves_out_ = false;
+  std::set<std::string> custom_;
 };
 
 }  // namespace lacerta

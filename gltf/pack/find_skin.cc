@@ -59,12 +59,26 @@ StatusOr<std::vector<Transform>> ReadInverseBinds(const GltfDocument& document, 
   return result;
 }
 
-// From mesh units to those of the world, over the joints: the median.
-double ScaleOf(const std::vector<Transform>& joints) {
-  std::vector<double> scales;
-  for (const Transform& m : joints) scales.push_back(std::cbrt(std::fabs(Determinant(m))));
+// From mesh units to those of the world.
+double ScaleOf(const Transform& joint) { return std::cbrt(std::fabs(Determinant(joint))); }
+
+// That of the joints whose scale is the median; the first of those.
+Transform MiddleOf(const std::vector<Transform>& joints) {
+  std::vector<std::pair<double, size_t>> scales;
+  for (size_t j = 0; j < joints.size(); ++j) scales.emplace_back(ScaleOf(joints[j]), j);
   std::nth_element(scales.begin(), scales.begin() + static_cast<std::ptrdiff_t>(scales.size() / 2), scales.end());
-  return scales[scales.size() / 2];
+  return joints[scales[scales.size() / 2].second];
+}
+
+// Mesh to world by each joint. Fails with kUnsupported where the skin refers to a node that does not exist.
+StatusOr<std::vector<Transform>> JointsIn(const Json& skin, const std::vector<Transform>& inverse_binds, const ScenePose& pose) {
+  std::vector<Transform> joints;
+  for (size_t j = 0; j < inverse_binds.size(); ++j) {
+    const uint64_t node = AsIndex(FindElement(skin, "joints", j)).value_or(~uint64_t{0});
+    if (node >= pose.size()) return Unsupported("its skin refers to a node that does not exist");
+    joints.push_back(Multiply(pose[static_cast<size_t>(node)], inverse_binds[j]));
+  }
+  return joints;
 }
 
 // Some vertices of a family.
@@ -173,14 +187,9 @@ StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const So
   double scale = 0.0;  // of the first pose, which is the one at rest
   for (const ScenePose& pose : poses) {
     if ((skin.poses.size() + 1) * skin.num_joints > kMostTransforms) break;
-    std::vector<Transform> joints;
-    for (size_t j = 0; j < skin.num_joints; ++j) {
-      const uint64_t node = AsIndex(FindElement(*json, "joints", j)).value_or(~uint64_t{0});
-      if (node >= pose.size()) return Unsupported("its skin refers to a node that does not exist");
-      joints.push_back(Multiply(pose[static_cast<size_t>(node)], inverse_binds[j]));
-    }
+    LACERTA_ASSIGN_OR_RETURN(std::vector<Transform> joints, JointsIn(*json, inverse_binds, pose));
     if (!std::all_of(joints.begin(), joints.end(), IsFinite)) continue;
-    if (!(scale > 0.0)) scale = ScaleOf(joints);
+    if (!(scale > 0.0)) scale = ScaleOf(MiddleOf(joints));
     if (!(scale > 0.0)) return Unsupported("its skin shrinks it to nothing");
     for (Transform& m : joints) {
       for (double& x : m) x /= scale;
@@ -192,6 +201,18 @@ StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const So
   LACERTA_RETURN_IF_ERROR(KeepMostDifferent(sample, &skin));
   LACERTA_RETURN_IF_ERROR(ScaleSmallPoses(sources, &skin));
   return skin;
+}
+
+std::optional<Transform> PlacementBySkin(const GltfDocument& document, uint64_t skin, const ScenePose& pose) {
+  const Json* json = FindElement(document.json, "skins", skin);
+  const uint64_t num_joints = json == nullptr ? 0 : ArraySize(*json, "joints");
+  if (num_joints == 0 || num_joints > kMostJoints) return std::nullopt;
+  const auto inverse_binds = ReadInverseBinds(document, *json, static_cast<size_t>(num_joints));
+  if (!inverse_binds.ok()) return std::nullopt;
+  const auto joints = JointsIn(*json, inverse_binds.value(), pose);
+  if (!joints.ok() || !std::all_of(joints.value().begin(), joints.value().end(), IsFinite)) return std::nullopt;
+  const Transform middle = MiddleOf(joints.value());
+  return ScaleOf(middle) > 0.0 ? std::optional<Transform>(middle) : std::nullopt;
 }
 
 }  // namespace lacerta

@@ -2,6 +2,7 @@
 #ifndef LACERTA_PACK_FIND_SKIN_H_
 #define LACERTA_PACK_FIND_SKIN_H_
 
+#include <optional>
 #include <vector>
 
 #include "document/gltf_document.h"
@@ -16,6 +17,10 @@ namespace lacerta {
 // with kUnsupported, and the reason, where not all of them have one and the same, or it cannot be used.
 StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const Source*>& sources,
                         const std::vector<ScenePose>& poses);
+
+// Where a skin puts what it moves, mesh to world, in a pose: the transform of the joint whose scale is the median. Empty where that is
+// not known or shrinks it to nothing.
+std::optional<Transform> PlacementBySkin(const GltfDocument& document, uint64_t skin, const ScenePose& pose);
 
 }  // namespace lacerta
 

@@ -86,16 +86,22 @@ std::vector<MorphTarget> TakeTargets(const std::vector<MorphTarget>& like, doubl
   return targets;
 }
 
-StatusOr<double> WorstMorph(const std::vector<MorphedPrimitive>& originals,
-                            const std::vector<MorphedPrimitive>& stored) {
-  constexpr uint64_t kSamples = 30'000;
+StatusOr<MorphMeter> MorphMeter::Create(const std::vector<MorphedPrimitive>& originals) {
   size_t num_targets = 0;
   for (const MorphedPrimitive& one : originals) num_targets = std::max(num_targets, one.targets->size());
-  double worst = 0.0;
+  MorphMeter meter;
   for (size_t t = 0; t < num_targets; ++t) {
-    LACERTA_ASSIGN_OR_RETURN(
-        const SurfaceDistance distance,
-        MeasureSurfaceDistance(Morphed(originals, t), Morphed(stored, t), SurfaceDistanceOptions::RmsOnly(kSamples)));
+    LACERTA_ASSIGN_OR_RETURN(SurfaceDistanceMeter target, SurfaceDistanceMeter::Create(Morphed(originals, t)));
+    meter.targets_.push_back(std::move(target));
+  }
+  return meter;
+}
+
+StatusOr<double> MorphMeter::Worst(const std::vector<MorphedPrimitive>& stored) const {
+  constexpr uint64_t kSamples = 30'000;
+  double worst = 0.0;
+  for (size_t t = 0; t < targets_.size(); ++t) {
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, targets_[t].Measure(Morphed(stored, t), SurfaceDistanceOptions::RmsOnly(kSamples)));
     worst = std::max(worst, distance.Rms());
   }
   return worst;

@@ -10,6 +10,7 @@
 #include "document/draco_encode.h"
 #include "document/primitive.h"
 #include "lacerta/status.h"
+#include "lacerta/surface_distance.h"
 #include "pack/source.h"
 
 namespace lacerta {
@@ -31,10 +32,17 @@ struct MorphedPrimitive {
   const std::vector<MorphTarget>* targets = nullptr;
 };
 
-// d_S between the surfaces with one target at weight 1 and all others at 0, of the target where that is largest, mesh
-// units.
-StatusOr<double> WorstMorph(const std::vector<MorphedPrimitive>& originals,
-                            const std::vector<MorphedPrimitive>& stored);
+class MorphMeter {
+ public:
+  // Fails like SurfaceDistanceMeter.
+  static StatusOr<MorphMeter> Create(const std::vector<MorphedPrimitive>& originals);
+
+  // d_S between the surfaces with one target at weight 1 and all others at 0, of the target where that is largest, mesh units.
+  StatusOr<double> Worst(const std::vector<MorphedPrimitive>& stored) const;
+
+ private:
+  std::vector<SurfaceDistanceMeter> targets_;
+};
 
 // Morph targets in the order that the vertices of a primitive have after coding at a precision; empty where that order
 // does not tell, because vertices with other targets became one.

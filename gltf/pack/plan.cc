@@ -281,7 +281,7 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
   const std::vector<size_t>& members = context.families.families[family].members;
   const bool is_stream = (*plans)[members[0]].progressive.has_value();
   uint64_t least = 0;
-  for (const size_t member : members) least += (*plans)[member].report.bytes_before + BytesOfTargets(context.sources[member].targets);
+  for (const size_t member : members) least += (*plans)[member].report.bytes_before;
   if (is_stream) least = std::min(least, (*plans)[members[0]].progressive->stream.size() + kDracoJsonBytes + kProgressiveJsonBytes);
   std::vector<double> everywhere;
   const StatusOr<std::optional<Skin>> skin = SkinOf(context, family);
@@ -325,7 +325,7 @@ void PlanFamily(size_t family, const Context& context, std::vector<PrimitivePlan
     if (!candidate.report.reason.empty()) AddReason(candidate.report.reason, &report);
     if (!simplified_reason.empty()) AddReason(simplified_reason, &report);
     report.storage = PrimitiveStorage::kDraco;
-    report.bytes_after = candidate.encoded.bytes.size();
+    report.bytes_after = candidate.encoded.bytes.size() + BytesOfTargets(candidate.targets);
     report.error = candidate.report.error;
     report.target_error = ErrorOf(context, family);
     report.position_bits = candidate.report.position_bits;
@@ -383,7 +383,7 @@ PrimitivePlan StartPlan(const GltfDocument& document, const Source& source) {
   plan.report.primitive = source.places[0].primitive;
   plan.report.name = AsString(Find(*FindElement(document.json, "meshes", source.places[0].mesh), "name"));
   plan.report.reason = source.reason;
-  plan.report.bytes_before = source.stored_bytes;
+  plan.report.bytes_before = source.stored_bytes + BytesOfTargets(source.targets);
   return plan;
 }
 
@@ -479,7 +479,7 @@ StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const GltfDocument& document, 
     PackOptions at = options;
     at.encode.target = {EncodeTarget::Kind::kPsnr, psnr};
     const double slack = std::max(1.0, std::pow(10.0, (kAttributesFrom - psnr) / 20.0));
-    for (double* target : {&at.attributes.uv_texels, &at.attributes.normal_degrees, &at.attributes.color}) *target *= slack;
+    for (double* target : {&at.attributes.uv_texels, &at.attributes.normal_degrees, &at.attributes.color, &at.attributes.custom}) *target *= slack;
     at.attributes.normal_degrees = std::min(at.attributes.normal_degrees, 30.0);
     LACERTA_ASSIGN_OR_RETURN(std::vector<PrimitivePlan> plans, PlanForErrors(document, at));
     const auto bytes = static_cast<double>(BytesOf(plans));

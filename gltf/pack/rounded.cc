@@ -43,12 +43,22 @@ struct Correction {
 
 double Square(double x) { return x * x; }
 
+std::map<std::string, double> CustomTargets(const FamilyMeter& meter) {
+  std::map<std::string, double> targets;
+  if (!meter.status().ok()) return targets;
+  for (const std::string& name : meter.custom()) {
+    const std::optional<size_t> index = meter.IndexOf(name);
+    if (index.has_value()) targets[name] = meter.targets().attributes[*index];
+  }
+  return targets;
+}
+
 class FamilyRounder {
  public:
   FamilyRounder(const std::vector<const Primitive*>& primitives, const FamilyMeter& meter, const SurfaceErrors* own,
                 const std::vector<double>& everywhere, const std::function<bool(const RoundedFamily&)>& is_usable)
       : primitives_(primitives), meter_(meter), is_usable_(is_usable),
-        attributes_(RoundedAttributesOf(primitives, meter.attribute_targets(), meter.texels_per_unit())),
+        attributes_(RoundedAttributesOf(primitives, meter.attribute_targets(), meter.texels_per_unit(), CustomTargets(meter))),
         forecast_(primitives_, attributes_), own_attributes_(attributes_.size(), 0.0),
         indices_(attributes_.size()) {
     correction_.attributes.assign(attributes_.size(), 1.0);

@@ -13,7 +13,7 @@ bool BeginsWith(const std::string& text, const char* prefix) { return text.rfind
 
 // Target, scale, and what kind it is; empty where it has to stay exact.
 std::optional<RoundedAttribute> ToleranceOf(const Attribute& attribute, size_t member, const AttributeTargets& targets,
-                                            const TexelScale& texels_per_unit) {
+                                            const TexelScale& texels_per_unit, const std::map<std::string, double>& custom) {
   const std::string& name = attribute.name;
   if (attribute.data.type != ComponentType::kFloat) return std::nullopt;
   RoundedAttribute result;
@@ -34,6 +34,8 @@ std::optional<RoundedAttribute> ToleranceOf(const Attribute& attribute, size_t m
   } else if (BeginsWith(name, "WEIGHTS_")) {
     result.target = targets.weight * components;
     result.is_shown = false;
+  } else if (const auto found = custom.find(name); found != custom.end()) {
+    result.target = found->second;
   } else {
     return std::nullopt;
   }
@@ -80,12 +82,13 @@ AccessorData RoundedAttribute::RoundedAt(const Primitive& member, const Part& pa
 }
 
 std::vector<RoundedAttribute> RoundedAttributesOf(const std::vector<const Primitive*>& primitives,
-                                                  const AttributeTargets& targets, const TexelScale& scale) {
+                                                  const AttributeTargets& targets, const TexelScale& scale,
+                                                  const std::map<std::string, double>& custom) {
   std::vector<RoundedAttribute> result;
   for (size_t m = 0; m < primitives.size(); ++m) {
     for (size_t i = 0; i < primitives[m]->attributes.size(); ++i) {
       const Attribute& attribute = primitives[m]->attributes[i];
-      std::optional<RoundedAttribute> own = ToleranceOf(attribute, m, targets, scale);
+      std::optional<RoundedAttribute> own = ToleranceOf(attribute, m, targets, scale, custom);
       if (!own.has_value() || !IsFinite(attribute.data)) continue;
       auto known = std::find_if(result.begin(), result.end(), [&](const RoundedAttribute& other) {
         return other.name == own->name && other.octahedral == own->octahedral && other.direction == own->direction;

@@ -2,6 +2,7 @@
 #ifndef LACERTA_PACK_ROUNDED_ATTRIBUTES_H_
 #define LACERTA_PACK_ROUNDED_ATTRIBUTES_H_
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -41,10 +42,11 @@ struct RoundedAttribute {
   AccessorData RoundedAt(const Primitive& member, const Part& part, int level) const;  // as a decoder returns it
 };
 
-// Attributes that nobody gave a tolerance for (application attributes, JOINTS) and those with values that are not finite
-// are not in here: they stay exact.
+// Attributes that nobody gave a tolerance for (JOINTS, application attributes that are not in `custom`: name and target, the length of
+// a difference) and those with values that are not finite are not in here: they stay exact.
 std::vector<RoundedAttribute> RoundedAttributesOf(const std::vector<const Primitive*>& primitives,
-                                                  const AttributeTargets& targets, const TexelScale& scale);
+                                                  const AttributeTargets& targets, const TexelScale& scale,
+                                                  const std::map<std::string, double>& custom = {});
 
 }  // namespace lacerta
 

@@ -133,7 +133,7 @@ StatusOr<SimplifiedFamily> SimplifyPrimitives(const FamilyMeter& meter, const st
   LACERTA_RETURN_IF_ERROR(meter.status());
   if (meter.leaves_out()) {
     // Names the attribute.
-    return ToAttributedMesh(meter.primitives(), meter.texels_per_unit(), OtherAttributes::kRefuse, meter.skin()).status();
+    return ToAttributedMesh(meter.primitives(), meter.texels_per_unit(), OtherAttributes::kRefuse, meter.skin(), meter.custom()).status();
   }
   ErrorTargets targets = meter.TargetsWith(everywhere);
   targets.distance *= kShare;

@@ -53,23 +53,28 @@ StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
     simplified_targets.push_back(TakeTargets(*targets[m], kNothing * meter.error(), &simplified.primitives[m]));
   }
   MorphedFamily result;
-  const auto takes_targets = [&](const RoundedFamily& rounded) {
+  const auto order_targets = [&](const RoundedFamily& rounded) {
     result.targets.clear();
-    std::vector<MorphedPrimitive> stored;
     for (size_t m = 0; m < targets.size(); ++m) {
       auto reordered = ReorderTargets({&simplified.primitives[m], &simplified_targets[m]}, rounded.precisions[m],
                                       rounded.members[m].decoded);
       if (!reordered.has_value()) return false;
       result.targets.push_back(std::move(*reordered));
     }
+    return true;
+  };
+  LACERTA_ASSIGN_OR_RETURN(const MorphMeter morph_meter, MorphMeter::Create(originals));
+  const auto takes_targets = [&](const RoundedFamily& rounded) {
+    if (!order_targets(rounded)) return false;
+    std::vector<MorphedPrimitive> stored;
     for (size_t m = 0; m < targets.size(); ++m) stored.push_back({&rounded.members[m].decoded, &result.targets[m]});
-    const StatusOr<double> worst = WorstMorph(originals, stored);
+    const StatusOr<double> worst = morph_meter.Worst(stored);
     return worst.ok() && worst.value() <= meter.error();
   };
   const SurfaceErrors errors = ErrorsOf(meter, morphed, std::move(simplified.errors));
   LACERTA_ASSIGN_OR_RETURN(result.rounded,
                            RoundFamily(PointersTo(simplified.primitives), meter, &errors, everywhere, takes_targets));
-  if (!takes_targets(result.rounded)) return InternalError("the morph targets do not follow what was measured");
+  if (!order_targets(result.rounded)) return InternalError("the morph targets do not follow what was measured");
   return result;
 }
 

@@ -252,6 +252,9 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   pack->add_option("--uv-error", arguments->attributes.uv_texels,
                    "At most this RMS error of texture coordinates, in texels of the asset's largest texture (at least 1024; default: 1)")
       ->check(CLI::PositiveNumber);
+  pack->add_option("--custom-error", arguments->attributes.custom,
+                   "Error of application attributes of floats, relative to their range (RMS); 0 keeps them exact")
+      ->check(CLI::NonNegativeNumber);
   pack->add_option("--normal-error", arguments->attributes.normal_degrees,
                    "At most this RMS error of normals and tangents, in degrees (default: 2); of simplified surfaces over the 99 % of the "
                    "area where it is least")

@@ -34,6 +34,9 @@ struct AttributeTargets {
   // Of each component, as 8-bit integers do it, the coarsest that core glTF has: 1 / (255 sqrt(12)).
   double color = 0.00113;
   double weight = 0.00113;
+  // Of each component of application attributes (`_X`) of floats that are not all whole numbers, relative to the range of the values in
+  // meshes that touch. Whole numbers may name something: they stay exact, as all do at 0, and their meshes keep their vertices.
+  double custom = 0.00113;
   // Simplified surfaces meet `normal_degrees` over their whole area, too, or are as good as all vertices rounded are: the last
   // hundredth, small parts and sharp rims, takes half as many bytes again.
   bool normals_everywhere = false;
@@ -73,7 +76,7 @@ struct PrimitiveReport {
   std::string name;  // of the mesh; may be empty
   PrimitiveStorage storage = PrimitiveStorage::kUntouched;
   std::string reason;         // why it is not progressive, or what EncodeMesh had to say; else empty
-  uint64_t bytes_before = 0;  // of its attributes and indices
+  uint64_t bytes_before = 0;  // of its attributes, indices and morph targets
   uint64_t bytes_after = 0;
   EncodeReport encode;  // of progressive ones; where several share a stream, of all of it with each
   // Of those stored as Draco or with attributes: measured d_S in mesh units (over all primitives that touch it and share its lattice), what

@@ -184,7 +184,7 @@ TEST(FamilyStream, NoStreamWithoutAReason) {
   const auto small = StreamFamily(meter, Effort::kNormal);
   EXPECT_EQ(small.status().code(), StatusCode::kUnsupported);
   EXPECT_FALSE(small.status().message().empty());
-  primitive.attributes.push_back({"_MINE", primitive.attributes[0].data});
+  primitive.attributes.push_back({"_MINE", MakeFloatAccessor(std::vector<float>(primitive.num_vertices, 3.0f), 1)});
   const FamilyMeter with_other({&primitive}, 1e-3, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
   EXPECT_THAT(StreamFamily(with_other, Effort::kNormal).status().message(), HasSubstr("interpolated"));
 }

@@ -60,6 +60,26 @@ TEST(Family, ErrorsAreThoseOfTheScene) {
   EXPECT_NEAR(FamilyError(families, plain, 20.0), families.families[plain].diagonal * 0.1, 1e-9);
 }
 
+TEST(Family, ASkinPutsItsMeshWhereItsJointsAre) {
+  Scene scene;
+  scene.Add(testing::WavySphere(6, 8));
+  scene.Add(testing::WavySphere(6, 8));
+  Json& json = scene.builder.document().json;
+  json["nodes"][1]["translation"] = {1000, 0, 0};  // glTF ignores it
+  json["nodes"][1]["skin"] = 0;
+  const uint64_t joint = json["nodes"].size();
+  json["nodes"].push_back({{"translation", {10, 0, 0}}, {"scale", {3, 3, 3}}});
+  json["scenes"][0]["nodes"].push_back(joint);
+  json["skins"] = Json::array({{{"joints", {joint}}}});
+  const Families families = scene.Find();
+  const Family& skinned = families.families[families.of_surface[1]];
+  EXPECT_NEAR(skinned.stretch, 3.0, 1e-9);
+  EXPECT_GT(families.scene_diagonal, 10.0);
+  EXPECT_LT(families.scene_diagonal, 20.0);
+  json["skins"][0]["joints"] = {joint + 1};  // does not exist: the node's place is all that is known
+  EXPECT_GT(scene.Find().scene_diagonal, 990.0);
+}
+
 TEST(Family, WhatTheSceneDoesNotShowCountsByItself) {
   Scene scene;
   scene.Add(testing::WavySphere(6, 8));

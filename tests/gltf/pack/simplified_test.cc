@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -72,9 +74,71 @@ TEST(Simplified, HalvesStayJoinedAndMeetTheErrors) {
   }
 }
 
+// Waves of an amplitude of 50 over the surface, and how far `family` has them off, at the vertices that it keeps.
+float HeatAt(const Vec3f& p) { return 50.0f * std::sin(4.0f * p.x) * std::cos(3.0f * p.y) + p.z; }
+
+Primitive WithHeat(const TriangleMesh& ball) {
+  Primitive primitive = Half(ball, true);
+  std::vector<float> heat;
+  for (const Vec3f& p : ball.positions) heat.push_back(HeatAt(p));
+  primitive.attributes.push_back({"_HEAT", MakeFloatAccessor(heat, 1)});
+  return primitive;
+}
+
+TEST(Simplified, ApplicationAttributesKeepTheirOwnTarget) {
+  const Primitive primitive = WithHeat(testing::WavySphere(40, 64));
+  size_t fewest = 0;
+  for (const double custom : {0.01, 0.001}) {
+    AttributeTargets targets;
+    targets.custom = custom;
+    const FamilyMeter meter({&primitive}, 0.03, targets, 1024, [](size_t, uint64_t) { return 1024.0; });
+    EXPECT_EQ(meter.custom(), std::set<std::string>{"_HEAT"});
+    const auto family = SimplifyFamily(meter);
+    ASSERT_TRUE(family.ok()) << family.status().message();
+    const Primitive& decoded = family.value().members[0].decoded;
+    const Attribute* heat = decoded.Find("_HEAT");
+    ASSERT_NE(heat, nullptr);
+    // Those on the open border lie on it, where the function is known.
+    double squares = 0.0;
+    const TriangleMesh surface = Surface(decoded);
+    for (uint64_t v = 0; v < decoded.num_vertices; ++v) {
+      const double off = heat->data.Float(v, 0) - HeatAt(surface.positions[v]);
+      squares += off * off;
+    }
+    const double range = 100.0, rms = std::sqrt(squares / static_cast<double>(decoded.num_vertices));
+    EXPECT_LT(rms, 2.0 * custom * range);
+    EXPECT_GT(rms, 0.05 * custom * range);
+    EXPECT_LT(decoded.triangles.size(), primitive.triangles.size());
+    EXPECT_GT(decoded.triangles.size(), fewest);
+    fewest = decoded.triangles.size();
+    const auto report = std::find_if(family.value().reports[0].begin(), family.value().reports[0].end(),
+                                     [](const AttributeReport& r) { return r.name == "_HEAT"; });
+    ASSERT_NE(report, family.value().reports[0].end());
+    EXPECT_LE(report->error, custom * range * 1.02);
+    EXPECT_GT(report->bits, 0);
+  }
+}
+
+TEST(Simplified, WhatMayBeANameStaysExact) {
+  Primitive primitive = WithHeat(testing::WavySphere(8, 12));
+  const auto custom = [](const Primitive& p) { return CustomAttributesOf({&p}); };
+  EXPECT_EQ(custom(primitive), std::set<std::string>{"_HEAT"});
+  Primitive whole = primitive, other = primitive, bytes = primitive;
+  whole.attributes.back().data = MakeFloatAccessor(std::vector<float>(whole.num_vertices, 7.0f), 1);
+  EXPECT_TRUE(custom(whole).empty());
+  bytes.attributes.back().data.type = ComponentType::kUint8;
+  EXPECT_TRUE(custom(bytes).empty());
+  EXPECT_TRUE(CustomAttributesOf({&primitive, &bytes}).empty());
+  other.attributes.back().name = "HEAT";
+  EXPECT_TRUE(custom(other).empty());
+  AttributeTargets exact;
+  exact.custom = 0.0;
+  EXPECT_TRUE(FamilyMeter({&primitive}, 0.01, exact, 1024, [](size_t, uint64_t) { return 1024.0; }).leaves_out());
+}
+
 TEST(Simplified, RefusesWhatCannotBeInterpolated) {
   Primitive primitive = Half(testing::WavySphere(8, 12), true);
-  primitive.attributes.push_back({"_MINE", primitive.attributes[0].data});
+  primitive.attributes.push_back({"_MINE", MakeFloatAccessor(std::vector<float>(primitive.num_vertices, 3.0f), 1)});
   const auto family = SimplifyFamily(FamilyMeter({&primitive}, 0.01, {}, 1024, [](size_t, uint64_t) { return 1024.0; }));
   EXPECT_EQ(family.status().code(), StatusCode::kUnsupported);
 }
