@@ -14,7 +14,6 @@
 namespace lacerta {
 namespace {
 
-constexpr double kMostTurned = 5e-4;
 // Offsets are off beside the surface that they start from.
 constexpr double kShareOfTargets = 0.6;
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
@@ -132,7 +131,7 @@ ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const A
                            uint64_t texel_side) {
   ErrorTargets result;
   result.distance = error;
-  result.turned = kMostTurned;
+  result.turned = targets.turned;
   const auto bound_everywhere = [&](double bound) {
     result.everywhere.resize(original.attributes.size(), std::numeric_limits<double>::infinity());
     result.everywhere[result.attributes.size()] = bound;

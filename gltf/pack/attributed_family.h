@@ -46,7 +46,7 @@ bool HasOtherAttributes(const std::vector<const Primitive*>& primitives, const S
                         const std::set<std::string>& custom = {});
 
 // The targets in the units of SurfaceErrorMeter with textures of `texel_side`; `error` in mesh units, of the surface and, over
-// the whole of it, of its poses; offsets of morph targets get a share of it. No more than one part in two thousand of the area may look away from the original.
+// the whole of it, of its poses; offsets of morph targets get a share of it.
 ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const AttributeTargets& targets,
                            uint64_t texel_side);
 

@@ -452,28 +452,40 @@ struct BudgetTrial {
   double log_bytes = 0.0;  // ln
 };
 
-// The quality at which the budget is thought to be met: between the nearest trials that fit it and that do not, or beyond the only one.
-double NextPsnr(const std::optional<BudgetTrial>& fits, const std::optional<BudgetTrial>& exceeds, double log_budget) {
-  if (fits.has_value() && exceeds.has_value()) {
+// The quality at which the budget is thought to be met, by what was tried so far (at least once): between the nearest trials that fit it
+// and that do not, or, in steps that never shrink, beyond the last one.
+double NextPsnr(const std::vector<BudgetTrial>& trials, double log_budget) {
+  const BudgetTrial *fits = nullptr, *exceeds = nullptr;
+  for (const BudgetTrial& trial : trials) (trial.log_bytes <= log_budget ? fits : exceeds) = &trial;
+  if (fits != nullptr && exceeds != nullptr) {
     const double share = (log_budget - fits->log_bytes) / (exceeds->log_bytes - fits->log_bytes);
     return fits->psnr + (exceeds->psnr - fits->psnr) * std::clamp(share, 0.1, 0.9);
   }
-  constexpr double kLogBytesPerDecibel = 0.11, kBeyond = 0.5;  // dB, so that the budget gets bracketed
+  constexpr double kBeyond = 0.5, kMostStep = 20.0;  // dB
   constexpr double kLeastPsnr = 20.0, kMostPsnr = 130.0;
-  const BudgetTrial& nearest = fits.has_value() ? *fits : *exceeds;
-  const double step = (log_budget - nearest.log_bytes) / kLogBytesPerDecibel + (fits.has_value() ? kBeyond : -kBeyond);
-  return std::clamp(nearest.psnr + step, kLeastPsnr, kMostPsnr);
+  const BudgetTrial& last = trials.back();
+  double log_bytes_per_decibel = 0.08, least_step = kBeyond;
+  if (trials.size() > 1) {
+    const BudgetTrial& before = trials[trials.size() - 2];
+    log_bytes_per_decibel = std::clamp((last.log_bytes - before.log_bytes) / (last.psnr - before.psnr), 0.01, 0.3);
+    least_step = std::fabs(last.psnr - before.psnr);
+  }
+  const double step = std::fabs(log_budget - last.log_bytes) / log_bytes_per_decibel + kBeyond;
+  const double taken = std::min(std::max(step, least_step), kMostStep);
+  return std::clamp(last.psnr + (fits != nullptr ? taken : -taken), kLeastPsnr, kMostPsnr);
 }
 
 // The scene's error is the same everywhere, in world units, so a byte more lowers it about as much in one mesh as in
 // another; the smallest error whose meshes fit into the budget is looked for. Attributes are let go with the positions.
 StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const GltfDocument& document, const PackOptions& options) {
-  constexpr int kMostTrials = 9;
-  constexpr double kGoodEnough = 0.98, kNoChange = 0.02;  // dB
+  constexpr int kMostTrials = 7;
+  constexpr double kGoodEnough = 0.96;  // sizes scatter by some percent between neighboring qualities
+  constexpr double kNoChange = 0.2;     // dB
+  constexpr double kMostTurned = 0.01;  // share of the area
   constexpr double kAttributesFrom = 70.0;  // dB: above, their own targets hold
   const auto budget = options.encode.target.value;
   double psnr = kAttributesFrom;
-  std::optional<BudgetTrial> below, above;
+  std::vector<BudgetTrial> trials;
   std::optional<std::vector<PrimitivePlan>> best;
   for (int trial = 0; trial < kMostTrials; ++trial) {
     PackOptions at = options;
@@ -481,16 +493,17 @@ StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const GltfDocument& document, 
     const double slack = std::max(1.0, std::pow(10.0, (kAttributesFrom - psnr) / 20.0));
     for (double* target : {&at.attributes.uv_texels, &at.attributes.normal_degrees, &at.attributes.color, &at.attributes.custom}) *target *= slack;
     at.attributes.normal_degrees = std::min(at.attributes.normal_degrees, 30.0);
+    at.attributes.turned = std::min(at.attributes.turned * slack, kMostTurned);
     LACERTA_ASSIGN_OR_RETURN(std::vector<PrimitivePlan> plans, PlanForErrors(document, at));
     const auto bytes = static_cast<double>(BytesOf(plans));
     const bool fits = bytes <= budget;
-    (fits ? below : above) = BudgetTrial{psnr, std::log(std::max(bytes, 1.0))};
+    trials.push_back({psnr, std::log(std::max(bytes, 1.0))});
     // Where nothing fits, the smallest is the best there is.
     const double known = best.has_value() ? static_cast<double>(BytesOf(*best)) : 0.0;
     const bool better = !best.has_value() || (fits ? known > budget || bytes > known : bytes < known);
     if (better) best = std::move(plans);
     if (fits && bytes >= kGoodEnough * budget) break;
-    const double next = NextPsnr(below, above, std::log(budget));
+    const double next = NextPsnr(trials, std::log(budget));
     if (std::fabs(next - psnr) < kNoChange) break;
     psnr = next;
   }

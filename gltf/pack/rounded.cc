@@ -15,7 +15,6 @@ namespace lacerta {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMostFlipped = 5e-4;
 
 // How finely positions and every attribute are rounded.
 struct Levels {
@@ -75,7 +74,7 @@ class FamilyRounder {
     }
     if (own == nullptr) return;
     own_distance_ = own->distance / targets_.distance;
-    own_turned_ = std::min(own->against_normals, kMostFlipped / 2);
+    own_turned_ = std::min(own->against_normals, meter.attribute_targets().turned / 2);
     if (poses_.has_value()) own_poses_ = Ratio(*own, *poses_);
     for (size_t a = 0; a < attributes_.size(); ++a) {
       if (indices_[a].has_value()) own_attributes_[a] = Ratio(*own, *indices_[a]);
@@ -154,7 +153,7 @@ class FamilyRounder {
     int worse = 0;
     for (int p = FirstPositions(); p <= kMostLevel && worse < kPatience; p += kStride) {
       const RoundedPositions& positions = forecast_.Positions(p);
-      if (positions.flipped + own_turned_ > kMostFlipped && p + kStride <= kMostLevel) continue;
+      if (positions.flipped + own_turned_ > meter_.attribute_targets().turned && p + kStride <= kMostLevel) continue;
       Levels levels{p, {}};
       double bits = num_positions_ * 3.0 * p / kLevelsPerBit;
       for (size_t a = 0; a < attributes_.size() && std::isfinite(bits); ++a) {

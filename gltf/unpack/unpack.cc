@@ -32,7 +32,20 @@ void Normalize(uint32_t components, bool sum, AccessorData* data) {
   }
 }
 
-// Quantization leaves normals, tangents and weights slightly off what glTF demands of them.
+// Quantization leaves normals, tangents and weights slightly off what glTF demands of them. Those of streams are of unit length but for
+// tangents, whose signs are interpolated, too.
+void RestoreTangents(Primitive* primitive) {
+  for (Attribute& attribute : primitive->attributes) {
+    AccessorData& data = attribute.data;
+    if (attribute.name != "TANGENT" || data.components != 4 || data.type != ComponentType::kFloat) continue;
+    Normalize(3, false, &data);
+    for (uint64_t i = 0; i < data.count; ++i) {
+      const float sign = data.Float(i, 3) < 0.0f ? -1.0f : 1.0f;
+      std::memcpy(data.bytes.data() + (4 * i + 3) * sizeof(float), &sign, sizeof(sign));
+    }
+  }
+}
+
 void RestoreUnits(Primitive* primitive) {
   for (Attribute& attribute : primitive->attributes) {
     AccessorData& data = attribute.data;
@@ -40,14 +53,8 @@ void RestoreUnits(Primitive* primitive) {
     if (attribute.name == "NORMAL" && data.components == 3) Normalize(3, false, &data);
     if (attribute.name == "WEIGHTS_0" && primitive->Find("WEIGHTS_1") == nullptr)
       Normalize(data.components, true, &data);
-    if (attribute.name == "TANGENT" && data.components == 4) {
-      Normalize(3, false, &data);
-      for (uint64_t i = 0; i < data.count; ++i) {
-        const float sign = data.Float(i, 3) < 0.0f ? -1.0f : 1.0f;
-        std::memcpy(data.bytes.data() + (4 * i + 3) * sizeof(float), &sign, sizeof(sign));
-      }
-    }
   }
+  RestoreTangents(primitive);
 }
 
 void DropProgressive(GltfDocument* document) {
@@ -97,7 +104,9 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
       if (!surface.ok()) return surface.status().WithContext(PlaceName(document, places[0]));
       if (!surface.value().note.empty())
         result.notes.push_back(PlaceName(document, places[0]) + ": " + surface.value().note);
-      ReplaceGeometry({places[0]}, places, PlainGeometry(ToPrimitive(surface.value()), &document), &pool, &document);
+      Primitive plain = ToPrimitive(surface.value());
+      RestoreTangents(&plain);
+      ReplaceGeometry({places[0]}, places, PlainGeometry(plain, &document), &pool, &document);
     } else if (PrimitiveExtension(primitive, kDracoName) != nullptr) {
       StatusOr<Primitive> decoded = ReadPrimitive(document, primitive, options.limits);
       if (!decoded.ok()) return decoded.status().WithContext(PlaceName(document, places[0]));

@@ -5,7 +5,10 @@
 
 #include "document/gltf_document.h"
 #include "extension/progressive.h"
+#include "document/place.h"
+#include "document/primitive.h"
 #include "gltf/test_assets.h"
+#include "gltf/torus_asset.h"
 #include "gltf/test_bytes.h"
 #include "lacerta/gltf.h"
 #include "lacerta/surface_distance.h"
@@ -223,6 +226,39 @@ TEST(Describe, BareStreamsAgreeWithTheirReport) {
       EXPECT_EQ(info.value().levels[i].bytes, encoded.value().report.levels[i].bytes);
     }
     EXPECT_EQ(info.value().levels.back().bytes, encoded.value().stream.size());
+  }
+}
+
+// Streams interpolate tangents and their signs; glTF wants unit vectors and 1 or -1.
+TEST(Unpack, TangentsOfStreamsAreLegal) {
+  testing::AssetBuilder builder;
+  Json primitives = Json::array();
+  for (VertexSoup half : shapes::HalvedTorus(64, 32)) {
+    VertexSoup::Attribute tangents{"TANGENT", AttributeKind::kTangent, 4, {}};
+    for (const Vec3f& p : half.positions) {
+      const Vec3f along = Normalized(Vec3f{-p.y, p.x, 0});
+      tangents.values.insert(tangents.values.end(), {along.x, along.y, along.z, primitives.empty() ? 1.0f : -1.0f});
+    }
+    half.attributes.push_back(tangents);
+    primitives.push_back(testing::AddSoup(half, &builder));
+  }
+  builder.AddMesh("torus", std::move(primitives));
+  PackOptions options;
+  options.encode.target = {EncodeTarget::Kind::kPsnr, 60.0};
+  options.encode.levels = LevelChoice::kAlways;
+  const auto packed = PackGltf(builder.Glb(), options);
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  ASSERT_EQ(packed.value().report.primitives[0].storage, PrimitiveStorage::kProgressive) << packed.value().report.primitives[0].reason;
+  const GltfDocument document = ParseGltf(UnpackGltf(packed.value().glb, {}).value().glb, "").value();
+  for (uint64_t part = 0; part < 2; ++part) {
+    const Primitive primitive = ReadPrimitive(document, PrimitiveAt(document, {0, part}), {}).value();
+    const Attribute* tangents = primitive.Find("TANGENT");
+    ASSERT_NE(tangents, nullptr);
+    for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
+      const auto at = [&](uint32_t c) { return tangents->data.Float(v, c); };
+      ASSERT_NEAR(Norm(Vec3f{at(0), at(1), at(2)}), 1.0f, 1e-5f);
+      ASSERT_EQ(at(3), part == 0 ? 1.0f : -1.0f);
+    }
   }
 }
 
