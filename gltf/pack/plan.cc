@@ -453,12 +453,15 @@ struct BudgetTrial {
 };
 
 // The quality at which the budget is thought to be met, by what was tried so far (at least once): between the nearest trials that fit it
-// and that do not, or, in steps that never shrink, beyond the last one.
+// and that do not, or, in steps that never shrink, beyond the last one. Bytes jump where a mesh becomes a stream: where two trials on one
+// side follow each other, the middle is next.
 double NextPsnr(const std::vector<BudgetTrial>& trials, double log_budget) {
   const BudgetTrial *fits = nullptr, *exceeds = nullptr;
   for (const BudgetTrial& trial : trials) (trial.log_bytes <= log_budget ? fits : exceeds) = &trial;
   if (fits != nullptr && exceeds != nullptr) {
-    const double share = (log_budget - fits->log_bytes) / (exceeds->log_bytes - fits->log_bytes);
+    const auto is_over = [&](const BudgetTrial& trial) { return trial.log_bytes > log_budget; };
+    const bool creeps = is_over(trials.back()) == is_over(trials[trials.size() - 2]);
+    const double share = creeps ? 0.5 : (log_budget - fits->log_bytes) / (exceeds->log_bytes - fits->log_bytes);
     return fits->psnr + (exceeds->psnr - fits->psnr) * std::clamp(share, 0.1, 0.9);
   }
   constexpr double kBeyond = 0.5, kMostStep = 20.0;  // dB
