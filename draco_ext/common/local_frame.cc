@@ -5,11 +5,15 @@
 namespace lacerta {
 namespace {
 
-// normal: not yet normalized.
+// area: the area vectors around, added up.
+Vec3f NormalOf(const Vec3f& area) {
+  const Vec3f normal = Normalized(area);
+  return normal == Vec3f{} ? Vec3f{0, 0, 1} : normal;
+}
+
 LocalFrame FrameAround(const Topology& coarse, Span<const Vec3f> positions, uint32_t edge, const Vec3f& normal) {
   LocalFrame frame;
-  frame.normal = Normalized(normal);
-  if (frame.normal == Vec3f{}) frame.normal = {0, 0, 1};
+  frame.normal = normal;
   const Vec3f along = Normalized(positions[coarse.edges[edge][1]] - positions[coarse.edges[edge][0]]);
   const Vec3f tangent = along - frame.normal * Dot(along, frame.normal);
   frame.tangent1 = SquaredNorm(tangent) > 1e-6f ? Normalized(tangent) : AnyOrthogonal(frame.normal);
@@ -27,16 +31,20 @@ Vec3f AnyOrthogonal(const Vec3f& n) {
   return Normalized(axis - n * Dot(axis, n));
 }
 
-LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints,
-                        uint32_t edge) {
-  Vec3f normal;
+Vec3f FrameNormalAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints, uint32_t edge) {
+  Vec3f area;
   for (const uint32_t face : coarse.edge_faces[edge]) {
     if (face == kNone) continue;
     const SplitFace split(coarse, positions, midpoints, face);
     const int k = EdgeCorner(coarse, face, edge);
-    normal += split.InMiddle() + split.AtCorner((k + 1) % 3) + split.AtCorner((k + 2) % 3);
+    area += split.InMiddle() + split.AtCorner((k + 1) % 3) + split.AtCorner((k + 2) % 3);
   }
-  return FrameAround(coarse, positions, edge, normal);
+  return NormalOf(area);
+}
+
+LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints,
+                        uint32_t edge) {
+  return FrameAround(coarse, positions, edge, FrameNormalAt(coarse, positions, midpoints, edge));
 }
 
 std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,
@@ -50,13 +58,13 @@ std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::ve
   std::vector<LocalFrame> frames;
   frames.reserve(coarse.num_edges());
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-    Vec3f normal;
+    Vec3f area;
     for (const uint32_t face : coarse.edge_faces[e]) {
       if (face == kNone) continue;
       const int k = EdgeCorner(coarse, face, e);
-      normal += areas[face][3] + areas[face][(k + 1) % 3] + areas[face][(k + 2) % 3];
+      area += areas[face][3] + areas[face][(k + 1) % 3] + areas[face][(k + 2) % 3];
     }
-    frames.push_back(FrameAround(coarse, positions, e, normal));
+    frames.push_back(FrameAround(coarse, positions, e, NormalOf(area)));
   }
   return frames;
 }

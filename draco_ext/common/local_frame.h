@@ -44,6 +44,9 @@ struct SplitFace {
 LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions,
                         Span<const Vec3f> predicted_midpoints, uint32_t edge);
 
+// Its normal alone.
+Vec3f FrameNormalAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> predicted_midpoints, uint32_t edge);
+
 // Frames of all edges: #E.
 std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,
                                            const std::vector<Vec3f>& predicted_midpoints);

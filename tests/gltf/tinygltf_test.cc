@@ -62,7 +62,7 @@ const Bytes& Packed(Fallback fallback) {
   const auto found = known.find(fallback);
   if (found != known.end()) return found->second;
   PackOptions options;
-  options.encode.target = {EncodeTarget::Kind::kPsnr, 62.0};
+  options.encode.target = {EncodeTarget::Kind::kPsnr, 74.0};
   options.encode.levels = LevelChoice::kAlways;
   options.fallback = fallback;
   return known.emplace(fallback, PackGltf(Scene(), options).value().glb).first->second;

@@ -16,7 +16,7 @@ inline Bytes TwoBalls() {
 
 inline PackResult PackTwoStreams(const std::string& external_uri = "") {
   PackOptions options;
-  options.encode.target = {EncodeTarget::Kind::kPsnr, 60.0};
+  options.encode.target = {EncodeTarget::Kind::kPsnr, 72.0};
   options.encode.levels = LevelChoice::kAlways;
   options.external_uri = external_uri;
   return PackGltf(TwoBalls(), options).value();

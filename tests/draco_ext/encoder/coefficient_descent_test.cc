@@ -136,7 +136,7 @@ TEST(Descend, PositionsAreThoseThatDecodersGet) {
 TEST(Descend, MovesTheBaseUnlessToldNotTo) {
   const SurfaceTarget target = Bumps();
   CodedSurface before = ClosedLoopAt(target, 1e-8);
-  for (auto& point : before.base.lattice) point[0] += 2;
+  for (auto& point : before.base.lattice) point[0] += 4;
   const CodedSurface still = Descend(target, before, {1e-8, 2, false}), moved = Descend(target, before, {1e-8, 2, true});
   EXPECT_EQ(still.base.lattice, before.base.lattice);
   EXPECT_NE(moved.base.lattice, before.base.lattice);
