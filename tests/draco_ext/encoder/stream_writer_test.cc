@@ -88,6 +88,15 @@ TEST(StreamWriterTest, RoundTripsCurvedLevels) {
   EXPECT_FALSE(Synthesize(Torus(6, 5), Curved(plain, 1), {}) == Synthesize(Torus(6, 5), plain, {}));
 }
 
+TEST(StreamWriterTest, MoreCurvedLevelsThanLevelsAreRefused) {
+  const Coefficients c = Curved(RandomCoefficients(Octahedron(), 2, 6), 2);
+  Bytes bytes = WriteRefinement(Octahedron(), c.steps, c.levels).value().bytes;
+  ASSERT_EQ(bytes[3], 1 | 2 << 4);
+  EXPECT_TRUE(DecodeRefinement(Octahedron(), bytes, {}).value().refinement.ok());
+  bytes[3] = 1 | 3 << 4;
+  EXPECT_THAT(DecodeRefinement(Octahedron(), bytes, {}).value().refinement.message(), HasSubstr("3 curved levels of 2"));
+}
+
 TEST(StreamWriterTest, TagsOfNothingCostNothing) {
   const Coefficients c = RandomCoefficients(Octahedron(), 2, 7);
   const BaseTags nothing = {std::vector<uint8_t>(8), std::vector<uint8_t>(12), std::vector<uint8_t>(6), {0, 1, 2, 3, 4, 5}};
