@@ -11,7 +11,7 @@ namespace lacerta {
 
 struct SearchEffort {
   double size_ratio = 1.5;   // between neighbors of the base sizes tried
-  double much_worse = 0.03;  // share of the bytes: neighbors that are worse by that end the walk over base sizes
+  double much_worse = 0.06;  // share of the bytes: neighbors that are worse by that end the walk over base sizes
   size_t enough_sizes = 100;  // after so many the best is taken, worse neighbors on either side or not; 1: the usual size, where it can do
   size_t at_a_time = 2;      // of those, taken to the target together: the best of them is kept
   // Passes of the descent: scores compare candidates, which a few tell; the stream that is kept is worth more.
