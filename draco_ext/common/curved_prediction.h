@@ -20,6 +20,11 @@ namespace lacerta {
 //   midpoints  #E from PredictMidpoints
 std::vector<Vec3f> CurveOffsets(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints);
 
+// That of a level that is curved; zeros of another.
+inline std::vector<Vec3f> LevelOffsets(const Topology& coarse, bool is_curved, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {
+  return is_curved ? CurveOffsets(coarse, positions, midpoints) : std::vector<Vec3f>(coarse.num_edges());
+}
+
 }  // namespace lacerta
 
 #endif  // LACERTA_COMMON_CURVED_PREDICTION_H_

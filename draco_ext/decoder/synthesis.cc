@@ -30,6 +30,7 @@ std::vector<EdgeOffset> Details(const Topology& coarse, const LevelSteps& steps,
 }  // namespace
 
 void AddDetails(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
+  if (steps.is_silent() && !steps.is_curved) return;
   Vec3f* const midpoints = positions->data() + coarse.num_vertices;
   const Span<const Vec3f> predicted(midpoints, coarse.num_edges());
   std::vector<EdgeOffset> details;
@@ -48,7 +49,7 @@ void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const Le
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
   positions->resize(size_t{coarse.num_vertices} + coarse.num_edges());
   PredictMidpoints(coarse, table, positions->data(), positions->data() + coarse.num_vertices);
-  if (steps.is_curved || !steps.is_silent()) AddDetails(coarse, steps, quantized, positions);
+  AddDetails(coarse, steps, quantized, positions);
 }
 
 }  // namespace lacerta

@@ -20,7 +20,8 @@ namespace lacerta {
 void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const LevelSteps& steps,
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions);
 
-// The second half of that: moves the butterfly's midpoints, the last #E of `positions`, to where curves and coefficients want them.
+// The second half of that: moves the butterfly's midpoints, the last #E of `positions`, to where curves and coefficients want them. Nothing to do on
+// a silent level that is not curved.
 void AddDetails(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, std::vector<Vec3f>* positions);
 
 }  // namespace lacerta

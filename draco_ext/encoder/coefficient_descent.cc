@@ -29,8 +29,7 @@ std::vector<Vec3f> LatticePoints(const BaseMesh& base) {
 
 // Moves the predicted vertices of level `level` (1 .. L), the last ones, to where its coefficients want them.
 void AddLevelDetails(const SurfaceTarget& target, const CodedSurface& coded, int level, std::vector<Vec3f>* positions) {
-  const LevelSteps& steps = coded.steps[level - 1];
-  if (steps.is_curved || !steps.is_silent()) AddDetails(target.topologies[level - 1], steps, coded.levels[level - 1], positions);
+  AddDetails(target.topologies[level - 1], coded.steps[level - 1], coded.levels[level - 1], positions);
 }
 
 // Appends the vertices of level `level` (1 .. L) to the positions of the coarser ones. predicted: of them, where it is at hand.
@@ -236,7 +235,7 @@ QuantizedLevel QuantizeLevel(const SurfaceTarget& target, int level, const std::
   quantized.tangential.resize(size_t{2} * coarse.num_edges());
   if (step.is_silent()) return quantized;
   const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
-  const std::vector<Vec3f> offsets = step.is_curved ? CurveOffsets(coarse, positions, predicted) : std::vector<Vec3f>(predicted.size());
+  const std::vector<Vec3f> offsets = LevelOffsets(coarse, step.is_curved, positions, predicted);
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     if (coarse.is_copy(e)) continue;
     const uint32_t v = coarse.num_vertices + e;

@@ -26,7 +26,7 @@ std::vector<double> DetailLengths(const SurfaceTarget& target, int level, bool i
   const std::vector<Vec3f> positions(target.points.begin(), target.points.begin() + coarse.num_vertices);
   const std::vector<Vec3f> predicted = target.midpoints[level - 1].Predict(positions);
   const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
-  const std::vector<Vec3f> offsets = is_curved ? CurveOffsets(coarse, positions, predicted) : std::vector<Vec3f>(predicted.size());
+  const std::vector<Vec3f> offsets = LevelOffsets(coarse, is_curved, positions, predicted);
   std::vector<double> lengths;
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     if (coarse.is_copy(e)) continue;

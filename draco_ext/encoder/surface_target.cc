@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "encoder/local_model.h"
+#include "geometry/vertex_area_vectors.h"
 
 namespace lacerta {
 namespace {
@@ -15,8 +16,7 @@ std::vector<float> AreaShares(const std::vector<Triangle>& triangles, const std:
   areas.reserve(triangles.size());
   double total = 0;
   for (const Triangle& t : triangles) {
-    const Vec3d a = Vec3Cast<double>(positions[t[0]]);
-    areas.push_back(Norm(Cross(Vec3Cast<double>(positions[t[1]]) - a, Vec3Cast<double>(positions[t[2]]) - a)));
+    areas.push_back(Norm(AreaVector(positions, t)));
     total += areas.back();
   }
   std::vector<float> shares(areas.size());

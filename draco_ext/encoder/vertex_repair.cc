@@ -40,7 +40,7 @@ void RepairVertices(const SurfaceTarget& target, CodedSurface* coded) {
     QuantizedLevel& quantized = coded->levels[level - 1];
     const std::vector<Vec3f> predicted = PredictMidpoints(coarse, target.stencils, positions);
     const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
-    const std::vector<Vec3f> offsets = steps.is_curved ? CurveOffsets(coarse, positions, predicted) : std::vector<Vec3f>(predicted.size());
+    const std::vector<Vec3f> offsets = LevelOffsets(coarse, steps.is_curved, positions, predicted);
     for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
       const Vec3f local = frames[e].ToLocal(target.points[coarse.num_vertices + e] - predicted[e] - offsets[e]);
       Repair(local.x, steps.tangential_step, &quantized.tangential[2 * e]);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "geometry/vertex_area_vectors.h"
+
 namespace lacerta {
 
 const MeshAttribute* FindNormals(const AttributedMesh& mesh) {
@@ -25,9 +27,7 @@ double ShareAgainstNormals(const AttributedMesh& mesh) {
   if (normals == nullptr) return 0;
   double all = 0, against = 0;
   for (uint32_t f = 0; f < mesh.surface.triangles.size(); ++f) {
-    const Triangle& t = mesh.surface.triangles[f];
-    const Vec3d a = Vec3Cast<double>(mesh.surface.positions[t[0]]);
-    const Vec3d normal = Cross(Vec3Cast<double>(mesh.surface.positions[t[1]]) - a, Vec3Cast<double>(mesh.surface.positions[t[2]]) - a);
+    const Vec3d normal = AreaVector(mesh.surface.positions, mesh.surface.triangles[f]);
     const double area = Norm(normal);
     all += area;
     if (Dot(normal, FacingOf(*normals, f)) < 0) against += area;

@@ -10,6 +10,7 @@
 
 #include "geometry/equal_rows.h"
 #include "geometry/triangle_points.h"
+#include "geometry/vertex_area_vectors.h"
 #include "remesh/attribute_values.h"
 
 namespace lacerta {
@@ -32,8 +33,7 @@ std::vector<Sample> TakeSamples(const AttributedMesh& mesh, const GroupSurface& 
   std::vector<double> areas;
   double total = 0;
   for (const Triangle& t : surface.triangles) {
-    const Vec3d a = Vec3Cast<double>(surface.positions[t[0]]);
-    areas.push_back(Norm(Cross(Vec3Cast<double>(surface.positions[t[1]]) - a, Vec3Cast<double>(surface.positions[t[2]]) - a)));
+    areas.push_back(Norm(AreaVector(surface.positions, t)));
     total += areas.back();
   }
   std::vector<Sample> samples;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "geometry/triangle_points.h"
+#include "geometry/vertex_area_vectors.h"
 #include "lacerta/surface_distance.h"
 
 namespace lacerta {
@@ -48,9 +49,7 @@ std::vector<OwnSample> SampleFaces(const TriangleMesh& mesh, const std::vector<u
   std::vector<double> areas(mesh.triangles.size());
   double total = 0;
   for (const uint32_t f : order) {
-    const Triangle& t = mesh.triangles[f];
-    const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
-    areas[f] = Norm(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a));
+    areas[f] = Norm(AreaVector(mesh.positions, mesh.triangles[f]));
     total += areas[f];
   }
   std::vector<OwnSample> result;

@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "geometry/facing.h"
+#include "geometry/vertex_area_vectors.h"
 
 namespace lacerta {
+
 double RangeOf(const MeshAttribute& attribute) {
   double range = 0;
   for (uint32_t c = 0; c < attribute.components; ++c) {
@@ -29,9 +31,7 @@ std::vector<double> AttributeShares(const AttributedMesh& mesh) {
   std::vector<double> areas(mesh.attributes.size(), 0.0);
   double all = 0;
   for (size_t f = 0; f < mesh.surface.triangles.size(); ++f) {
-    const Triangle& t = mesh.surface.triangles[f];
-    const Vec3d a = Vec3Cast<double>(mesh.surface.positions[t[0]]);
-    const double area = Norm(Cross(Vec3Cast<double>(mesh.surface.positions[t[1]]) - a, Vec3Cast<double>(mesh.surface.positions[t[2]]) - a));
+    const double area = Norm(AreaVector(mesh.surface.positions, mesh.surface.triangles[f]));
     all += area;
     for (size_t i = 0; i < areas.size(); ++i) areas[i] += mesh.attributes[i].corners[f][0] != MeshAttribute::kNoValue ? area : 0;
   }

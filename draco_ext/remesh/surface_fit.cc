@@ -11,6 +11,7 @@
 #include "common/subdivision.h"
 #include "geometry/triangle_points.h"
 #include "geometry/triangle_tree.h"
+#include "geometry/vertex_area_vectors.h"
 #include "remesh/reversal.h"
 
 namespace lacerta {
@@ -43,9 +44,7 @@ class PointWalk {
   Vec3d weights() const { return TrianglePoint(num_points_ - 1, 0); }
 
   static double DoubledArea(const TriangleMesh& mesh, uint32_t face) {
-    const Triangle& t = mesh.triangles[face];
-    const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
-    return Norm(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a));
+    return Norm(AreaVector(mesh.positions, mesh.triangles[face]));
   }
 
  private:

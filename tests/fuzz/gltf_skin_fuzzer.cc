@@ -8,6 +8,7 @@
 #include "document/animation.h"
 #include "document/scene_poses.h"
 #include "fuzz/fuzz_input.h"
+#include "fuzz/strange_asset.h"
 #include "lacerta/gltf.h"
 #include "pack/find_skin.h"
 #include "pack/source.h"
@@ -44,9 +45,7 @@ void CheckSkin(const lacerta::Source& source, const lacerta::Skin& skin) {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const lacerta::Span<const uint8_t> asset(data, size);
-  lacerta::PackOptions options;
-  options.folder = "/nonexistent";  // external buffers are not for this test
-  const auto document = lacerta::ParseGltf(asset, options.folder);
+  const auto document = lacerta::ParseGltf(asset, lacerta::fuzz::kNoFolder);
   if (!document.ok()) return 0;
   CheckAnimations(document.value());
   const std::vector<lacerta::ScenePose> poses = ScenePoses(document.value());
@@ -61,13 +60,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     FUZZ_CHECK(skin.ok() || !skin.status().message().empty());
     if (skin.ok()) CheckSkin(source, skin.value());
   }
-  constexpr size_t kMostTriangles = 8;
-  if (num_triangles > kMostTriangles) return 0;
-  options.encode.effort = lacerta::Effort::kFast;
-  options.encode.levels = lacerta::LevelChoice::kNever;
-  options.simplify = false;  // as in gltf_source_fuzzer
-  const auto packed = PackGltf(asset, options);
-  FUZZ_CHECK(packed.ok() || !packed.status().message().empty());
-  if (packed.ok()) FUZZ_CHECK(lacerta::UnpackGltf(packed.value().glb, {}).ok());
+  lacerta::fuzz::CheckPackingOfFew(asset, num_triangles);
   return 0;
 }

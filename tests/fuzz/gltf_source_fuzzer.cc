@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "fuzz/fuzz_input.h"
+#include "fuzz/strange_asset.h"
 #include "lacerta/gltf.h"
 #include "pack/source.h"
 
@@ -41,9 +42,7 @@ size_t CheckSource(const lacerta::Source& source) {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const lacerta::Span<const uint8_t> asset(data, size);
-  lacerta::PackOptions options;
-  options.folder = "/nonexistent";  // external buffers are not for this test
-  const auto document = lacerta::ParseGltf(asset, options.folder);
+  const auto document = lacerta::ParseGltf(asset, lacerta::fuzz::kNoFolder);
   if (!document.ok()) {
     FUZZ_CHECK(!document.status().message().empty());
     return 0;
@@ -52,16 +51,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (!sources.ok()) return 0;
   size_t num_triangles = 0;
   for (const lacerta::Source& source : sources.value()) num_triangles += CheckSource(source);
-  constexpr size_t kMostTriangles = 8;
-  if (num_triangles > kMostTriangles) return 0;
-  // A search of levels or of simplified surfaces takes a second; readers and rounding are what strangers' bytes reach first.
-  options.encode.effort = lacerta::Effort::kFast;
-  options.encode.levels = lacerta::LevelChoice::kNever;
-  options.simplify = false;
-  const auto packed = PackGltf(asset, options);
-  FUZZ_CHECK(packed.ok() || !packed.status().message().empty());
-  if (!packed.ok()) return 0;
-  const auto unpacked = lacerta::UnpackGltf(packed.value().glb, {});
-  FUZZ_CHECK(unpacked.ok());
+  lacerta::fuzz::CheckPackingOfFew(asset, num_triangles);
   return 0;
 }
