@@ -95,12 +95,21 @@ std::vector<Vec3f> BaseDomain::PositionsOn(const TriangleMesh& input) const {
   return positions;
 }
 
-DomainPoint BaseDomain::FromInput(const DomainPoint& on_input) const {
-  const DomainPoint p = history_.Forward({on_input.face, ClampWeights(on_input.barycentric)}, cut_);
+DomainPoint BaseDomain::OnBaseFace(const DomainPoint& p) const {
   const uint32_t face = base_face_[p.face];
   DomainPoint result{face, {}};
   for (int k = 0; k < 3; ++k) result.barycentric[k] = p.barycentric[(k + rotation_[face]) % 3];
   return result;
+}
+
+DomainPoint BaseDomain::FromInput(const DomainPoint& on_input) const {
+  return OnBaseFace(history_.Forward({on_input.face, ClampWeights(on_input.barycentric)}, cut_));
+}
+
+void BaseDomain::FromInput(std::vector<DomainPoint>* points) const {
+  for (DomainPoint& p : *points) p.barycentric = ClampWeights(p.barycentric);
+  history_.Forward(points, cut_);
+  for (DomainPoint& p : *points) p = OnBaseFace(p);
 }
 
 DomainPoint BaseDomain::ToInput(const DomainPoint& on_base) const {

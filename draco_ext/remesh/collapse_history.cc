@@ -106,13 +106,17 @@ std::vector<uint32_t> CollapseHistory::FacesAt(const HistoryCut& cut) const {
   return alive;
 }
 
-DomainPoint CollapseHistory::ForwardOnce(const DomainPoint& point, const End& end) const {
+Vec2d CollapseHistory::PlaceInChart(const DomainPoint& point, const End& end) const {
   const Collapse& c = collapses_[end.collapse];
   const Vec2d* ring = &ring_positions_[c.first_ring];
-  const int k = c.valence;
   const double w1 = point.barycentric[(end.corner + 1) % 3], w2 = point.barycentric[(end.corner + 2) % 3];
-  const Vec2d &p1 = ring[end.spoke], &p2 = ring[end.spoke + 1 == k ? 0 : end.spoke + 1];
-  const Vec2d q = {w1 * p1.x + w2 * p2.x, w1 * p1.y + w2 * p2.y};  // v is the origin
+  const Vec2d &p1 = ring[end.spoke], &p2 = ring[end.spoke + 1 == c.valence ? 0 : end.spoke + 1];
+  return {w1 * p1.x + w2 * p2.x, w1 * p1.y + w2 * p2.y};  // v is the origin
+}
+
+DomainPoint CollapseHistory::InNewFaces(const Vec2d& q, const Collapse& c) const {
+  const Vec2d* ring = &ring_positions_[c.first_ring];
+  const int k = c.valence;
   // The new faces are a fan around the vertex kept. Signs tell which of them q may be in; only there weights are computed.
   const Vec2d& apex = ring[c.kept];
   const Vec2d to_q = Minus(q, apex);
@@ -168,8 +172,30 @@ DomainPoint CollapseHistory::BackwardOnce(const DomainPoint& point, const Collap
 }
 
 DomainPoint CollapseHistory::Forward(DomainPoint point, const HistoryCut& cut) const {
-  while (cut.Has(ends_[point.face].collapse)) point = ForwardOnce(point, ends_[point.face]);
+  while (cut.Has(ends_[point.face].collapse)) {
+    const End& end = ends_[point.face];
+    point = InNewFaces(PlaceInChart(point, end), collapses_[end.collapse]);
+  }
   return point;
+}
+
+void CollapseHistory::Forward(std::vector<DomainPoint>* points, const HistoryCut& cut) const {
+  struct Step {
+    DomainPoint* point;
+    End end;
+    Vec2d place;
+  };
+  std::vector<Step> steps;
+  steps.reserve(points->size());
+  for (DomainPoint& point : *points) steps.push_back({&point, {}, {}});
+  // Every loop reads what the one before has found the address of.
+  for (;;) {
+    for (Step& step : steps) step.end = ends_[step.point->face];
+    steps.erase(std::remove_if(steps.begin(), steps.end(), [&](const Step& step) { return !cut.Has(step.end.collapse); }), steps.end());
+    if (steps.empty()) return;
+    for (Step& step : steps) step.place = PlaceInChart(*step.point, step.end);
+    for (Step& step : steps) *step.point = InNewFaces(step.place, collapses_[step.end.collapse]);
+  }
 }
 
 DomainPoint CollapseHistory::Backward(DomainPoint point) const {

@@ -73,6 +73,8 @@ class CollapseHistory {
 
   // The same point on a face that exists at a cut, from an earlier face.
   DomainPoint Forward(DomainPoint point, const HistoryCut& cut) const;
+  // Each of them, in two thirds of the time where there are some dozens: while one waits for memory, others go on.
+  void Forward(std::vector<DomainPoint>* points, const HistoryCut& cut) const;
   // The same point on a face of the input mesh, from any face.
   DomainPoint Backward(DomainPoint point) const;
 
@@ -92,7 +94,8 @@ class CollapseHistory {
     uint16_t spoke = 0;
     uint8_t corner = 0;
   };
-  DomainPoint ForwardOnce(const DomainPoint& point, const End& end) const;
+  Vec2d PlaceInChart(const DomainPoint& point, const End& end) const;        // of the collapse that ends the point's face
+  DomainPoint InNewFaces(const Vec2d& place, const Collapse& collapse) const;  // the point there
   DomainPoint BackwardOnce(const DomainPoint& point, const Collapse& c) const;
 
   std::vector<CurveRole> roles_;                     // per vertex of the input

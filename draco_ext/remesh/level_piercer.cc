@@ -7,6 +7,13 @@
 #include <optional>
 
 namespace lacerta {
+namespace {
+
+DomainPoint InputPoint(const SurfacePoint& point) {
+  return {point.face, {point.barycentric[0], point.barycentric[1], point.barycentric[2]}};
+}
+
+}  // namespace
 
 // Whether the parametrization agrees that a point found on the input belongs to the middle of `edge`: not too far from it, and
 // in the chart of the base face where folds are checked; on a base edge in the two faces there. So all vertices of a level
@@ -60,9 +67,15 @@ Expectation LevelPiercer::Expect(uint32_t edge) const {
           static_cast<float>(options_.max_distance) * Norm(sites_[b].position - sites_[a].position)};
 }
 
-Site LevelPiercer::SiteAt(const SurfacePoint& point, PiercingKind kind) const {
-  const Vec3d w{point.barycentric[0], point.barycentric[1], point.barycentric[2]};
-  return {point.position, surface_.NormalAt(point.face, w), domain_.FromInput({point.face, w}), kind, 0};
+// parameter: of the point, in the base domain.
+Site LevelPiercer::SiteAt(const SurfacePoint& point, PiercingKind kind, const DomainPoint& parameter) const {
+  return {point.position, surface_.NormalAt(point.face, InputPoint(point).barycentric), parameter, kind, 0};
+}
+
+Site LevelPiercer::SiteOn(const LineHit& hit, uint32_t edge, const DomainPoint& parameter) const {
+  Site site = SiteAt(hit.point, PiercingKind::kNormal, parameter);
+  site.position = predicted_[edge] + frames_[edge].normal * hit.t;
+  return site;
 }
 
 bool LevelPiercer::IsSound(uint32_t edge, const Expectation& expected, Site* site) const {
@@ -75,7 +88,7 @@ Site LevelPiercer::ClosestSite(uint32_t edge, const Vec3f& position) const {
   const Expectation expected = Expect(edge);
   const ClosestPointResult closest = surface_.tree().ClosestPoint(position, expected.reach * expected.reach);
   if (closest.point.face != kNone) {
-    Site site = SiteAt(closest.point, PiercingKind::kClosest);
+    Site site = SiteAt(closest.point, PiercingKind::kClosest, domain_.FromInput(InputPoint(closest.point)));
     if (IsSound(edge, expected, &site)) return site;
   }
   return ParametricSite(expected);
@@ -92,19 +105,53 @@ Site LevelPiercer::ParametricSite(const Expectation& expected) const {
   return SiteOf(*domain_.FromChart(expected.center, expected.middle), PiercingKind::kParametric);
 }
 
+// Of the normal line, the nearest first.
+std::vector<LineHit> LevelPiercer::HitsOf(uint32_t edge, float reach) const {
+  std::vector<LineHit> hits;
+  surface_.tree().IntersectLine(predicted_[edge], frames_[edge].normal, -reach, reach, &hits);
+  std::sort(hits.begin(), hits.end(), [](const LineHit& x, const LineHit& y) { return std::fabs(x.t) < std::fabs(y.t); });
+  return hits;
+}
+
 // The nearest sound hit of the normal line, else the closest point.
 Site LevelPiercer::PiercedSite(uint32_t edge) const {
   const Expectation expected = Expect(edge);
-  const Vec3f &origin = predicted_[edge], &normal = frames_[edge].normal;
-  std::vector<LineHit> hits;
-  surface_.tree().IntersectLine(origin, normal, -expected.reach, expected.reach, &hits);
-  std::sort(hits.begin(), hits.end(), [](const LineHit& x, const LineHit& y) { return std::fabs(x.t) < std::fabs(y.t); });
-  for (const LineHit& hit : hits) {
-    Site site = SiteAt(hit.point, PiercingKind::kNormal);
-    site.position = origin + normal * hit.t;
+  for (const LineHit& hit : HitsOf(edge, expected.reach)) {
+    Site site = SiteOn(hit, edge, domain_.FromInput(InputPoint(hit.point)));
     if (IsSound(edge, expected, &site)) return site;
   }
-  return ClosestSite(edge, origin);
+  return ClosestSite(edge, predicted_[edge]);
+}
+
+// FindSite of a range of edges. The nearest hit mostly is sound, and the points of the domain of many are found faster than of one.
+void LevelPiercer::PierceRange(uint32_t first_edge, uint32_t end_edge, std::vector<Site>* midpoints) const {
+  struct Nearest {
+    uint32_t edge;
+    Expectation expected;
+    LineHit hit;
+  };
+  std::vector<Nearest> nearest;
+  std::vector<DomainPoint> parameters;
+  for (uint32_t e = first_edge; e < end_edge; ++e) {
+    if (coarse_.on_curve[e]) {
+      (*midpoints)[e] = FindCurveSite(e, PiercingKind::kNormal);
+      continue;
+    }
+    const Expectation expected = Expect(e);
+    const std::vector<LineHit> hits = HitsOf(e, expected.reach);
+    if (hits.empty()) {
+      (*midpoints)[e] = ClosestSite(e, predicted_[e]);
+      continue;
+    }
+    nearest.push_back({e, expected, hits.front()});
+    parameters.push_back(InputPoint(hits.front().point));
+  }
+  domain_.FromInput(&parameters);
+  for (size_t i = 0; i < nearest.size(); ++i) {
+    const uint32_t e = nearest[i].edge;
+    Site site = SiteOn(nearest[i].hit, e, parameters[i]);
+    (*midpoints)[e] = IsSound(e, nearest[i].expected, &site) ? site : PiercedSite(e);
+  }
 }
 
 Site LevelPiercer::FindSite(uint32_t edge, PiercingKind first_kind) const {
@@ -175,8 +222,9 @@ std::vector<Site> LevelPiercer::Run(const StencilTable& stencils, const std::vec
   predicted_ = PredictMidpoints(coarse_, stencils, positions);
   frames_ = ComputeLocalFrames(coarse_, positions, predicted_);
   std::vector<Site> midpoints(coarse_.num_edges());
-  tbb::parallel_for(uint32_t{0}, coarse_.num_edges(),
-                    [&](uint32_t e) { midpoints[e] = FindSite(e, PiercingKind::kNormal); });
+  constexpr uint32_t kRange = 64;  // edges
+  tbb::parallel_for(uint32_t{0}, (coarse_.num_edges() + kRange - 1) / kRange,
+                    [&](uint32_t i) { PierceRange(i * kRange, std::min((i + 1) * kRange, coarse_.num_edges()), &midpoints); });
   // Each round moves at least one midpoint one kind further, so this ends; a few rounds settle it in practice.
   std::vector<uint8_t> folded(coarse_.num_edges(), 1);
   for (;;) {

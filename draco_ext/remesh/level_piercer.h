@@ -72,7 +72,9 @@ class LevelPiercer {
  private:
   uint32_t BaseFace(uint32_t face) const { return face >> (2 * level_); }
   Site FindSite(uint32_t edge, PiercingKind first_kind) const;
+  std::vector<LineHit> HitsOf(uint32_t edge, float reach) const;
   Site PiercedSite(uint32_t edge) const;
+  void PierceRange(uint32_t first_edge, uint32_t end_edge, std::vector<Site>* midpoints) const;
   Site ClosestSite(uint32_t edge, const Vec3f& position) const;
   Site ParametricSite(const Expectation& expected) const;
   Site SiteOf(const DomainPoint& parameter, PiercingKind kind) const;
@@ -80,7 +82,8 @@ class LevelPiercer {
   Site FindCurveSite(uint32_t edge, PiercingKind first_kind) const;
   bool Confirms(uint32_t edge, const ChartPoint& middle, double edge_length, Site* site) const;
   Expectation Expect(uint32_t edge) const;
-  Site SiteAt(const SurfacePoint& point, PiercingKind kind) const;
+  Site SiteAt(const SurfacePoint& point, PiercingKind kind, const DomainPoint& parameter) const;
+  Site SiteOn(const LineHit& hit, uint32_t edge, const DomainPoint& parameter) const;
   bool IsSound(uint32_t edge, const Expectation& expected, Site* site) const;
   FaceSites SitesOf(uint32_t face, const std::vector<Site>& midpoints) const;
   bool FoldsInChart(const FaceSites& sites, const int (&child)[3]) const;

@@ -64,6 +64,30 @@ TEST(BaseDomain, InputAndBaseMapBothWays) {
   }
 }
 
+TEST(BaseDomain, ManyPointsGoWhereEachOfThemGoes) {
+  for (const shapes::NamedShape& shape : ClosedShapes()) {
+    SCOPED_TRACE(shape.name);
+    const Fixture f(shape.mesh, 40);
+    const BaseDomain domain = f.Domain();
+    std::mt19937 random(5);
+    std::vector<DomainPoint> alone, together;
+    for (int i = 0; i < 300; ++i) {
+      const DomainPoint in = RandomPointOn(random() % f.mesh.triangles.size(), &random);
+      alone.push_back(domain.FromInput(in));
+      together.push_back(in);
+    }
+    domain.FromInput(&together);
+    ASSERT_EQ(together.size(), alone.size());
+    for (size_t i = 0; i < alone.size(); ++i) {
+      EXPECT_EQ(together[i].face, alone[i].face);
+      EXPECT_EQ(together[i].barycentric, alone[i].barycentric);
+    }
+    together.clear();
+    domain.FromInput(&together);
+    EXPECT_TRUE(together.empty());
+  }
+}
+
 TEST(BaseDomain, BaseVerticesAreInputVertices) {
   const Fixture f(shapes::Torus(32, 16), 30);
   const BaseDomain domain = f.Domain();
