@@ -11,6 +11,17 @@
 namespace lacerta {
 namespace {
 
+// Attributes are let go with the positions below this quality; above it their own targets hold.
+constexpr double kAttributesFrom = 70.0;  // dB
+
+double Slack(double psnr) { return std::max(1.0, std::pow(10.0, (kAttributesFrom - psnr) / 20.0)); }
+
+// A share of the area: a shape that may be farther off loses more of its folds.
+double TurnedAt(double turned, double psnr) {
+  constexpr double kMost = 0.01;
+  return std::min(turned * Slack(psnr), std::max(turned, kMost));
+}
+
 // The plans of all families, and of what is no part of one, in the order of the sources.
 std::vector<PrimitivePlan> InOrder(const PackedScene& scene, std::vector<std::vector<PrimitivePlan>> families) {
   std::vector<PrimitivePlan> plans(scene.sources.size());
@@ -23,7 +34,8 @@ std::vector<PrimitivePlan> InOrder(const PackedScene& scene, std::vector<std::ve
   return plans;
 }
 
-StatusOr<std::vector<PrimitivePlan>> PlanAlike(const PackedScene& scene, const PackOptions& options) {
+StatusOr<std::vector<PrimitivePlan>> PlanAlike(const PackedScene& scene, PackOptions options) {
+  options.attributes.turned = TurnedAt(options.attributes.turned, TargetPsnr(options.encode.target));
   std::vector<std::vector<PrimitivePlan>> families;
   for (size_t f = 0; f < scene.families.families.size(); ++f) {
     LACERTA_ASSIGN_OR_RETURN(std::vector<PrimitivePlan> plans, PlanFamily({&scene, &options, f}));
@@ -40,16 +52,12 @@ bool IsSharedBudget(const PackedScene& scene, const PackOptions& options) {
   return !ReasonAgainstProgressive({&scene, &options, 0}, 0, &smooth).empty();
 }
 
-// Attributes are let go with the positions below this quality; above it their own targets hold.
 PackOptions OptionsAt(const PackOptions& options, double psnr) {
-  constexpr double kMostTurned = 0.01;      // share of the area
-  constexpr double kAttributesFrom = 70.0;  // dB
   PackOptions at = options;
   at.encode.target = {EncodeTarget::Kind::kPsnr, psnr};
-  const double slack = std::max(1.0, std::pow(10.0, (kAttributesFrom - psnr) / 20.0));
-  for (double* target : {&at.attributes.uv_texels, &at.attributes.normal_degrees, &at.attributes.color, &at.attributes.custom}) *target *= slack;
+  for (double* target : {&at.attributes.uv_texels, &at.attributes.normal_degrees, &at.attributes.color, &at.attributes.custom}) *target *= Slack(psnr);
   at.attributes.normal_degrees = std::min(at.attributes.normal_degrees, 30.0);
-  at.attributes.turned = std::min(at.attributes.turned * slack, kMostTurned);
+  at.attributes.turned = TurnedAt(at.attributes.turned, psnr);
   return at;
 }
 
