@@ -12,6 +12,7 @@
 
 #include "geometry/group_surface.h"
 #include "geometry/surface_sampler.h"
+#include "geometry/value_difference.h"
 #include "lacerta/surface_distance.h"
 
 namespace lacerta {
@@ -29,26 +30,6 @@ namespace {
 constexpr uint64_t kBlockSize = 2048;
 constexpr double kBestShare = 0.99;
 constexpr float kAbsent = -1;  // in place of an error: no attribute there
-
-double DegreesBetween(const Vec3d& a, const Vec3d& b) {
-  constexpr double kDegreesPerRadian = 57.29577951308232;
-  const double norm_a = Norm(a), norm_b = Norm(b);
-  if (norm_a == 0 && norm_b == 0) return 0;
-  if (norm_a == 0 || norm_b == 0) return 90;  // a vector without direction is as far from all
-  return kDegreesPerRadian * std::atan2(Norm(Cross(a, b)), Dot(a, b));
-}
-
-// In the units of AttributeError.
-double ErrorBetween(const MeshAttribute& attribute, double texture_size, const double* a, const double* b) {
-  const bool is_direction = IsDirection(attribute.kind);
-  if (is_direction && attribute.components >= 3) {
-    if (attribute.components > 3 && (a[3] < 0) != (b[3] < 0)) return 180;
-    return DegreesBetween({a[0], a[1], a[2]}, {b[0], b[1], b[2]});
-  }
-  double sum = 0;
-  for (uint32_t i = 0; i < attribute.components; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum) * (attribute.kind == AttributeKind::kTextureCoordinates ? texture_size : 1.0);
-}
 
 struct SampledErrors {
   std::vector<float> errors;    // of attribute a at a * num_samples

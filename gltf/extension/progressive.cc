@@ -259,25 +259,47 @@ StatusOr<GatheredStream> GatherStream(const GltfDocument& document, const Progre
 
 std::vector<Segment> OrderSegments(const std::vector<std::vector<uint64_t>>& part_lengths,
                                    const std::vector<std::vector<double>>& errors) {
-  std::vector<Segment> order;
-  std::vector<size_t> next(part_lengths.size(), 1);
-  for (size_t s = 0; s < part_lengths.size(); ++s) order.push_back({s, part_lengths[s][0]});
-  for (;;) {
-    size_t best = part_lengths.size();
-    double best_gain = 0.0;
-    for (size_t s = 0; s < part_lengths.size(); ++s) {
-      if (next[s] >= part_lengths[s].size()) continue;
-      const double drop = errors[s][next[s] - 1] - errors[s][next[s]];
-      const double gain = drop / static_cast<double>(std::max<uint64_t>(part_lengths[s][next[s]], 1));
-      if (best == part_lengths.size() || gain > best_gain) {
-        best = s;
-        best_gain = gain;
-      }
+  // Parts in a row: one that lowers the error little may be on the way to one that lowers it a lot.
+  struct Run {
+    size_t end = 0;
+    double gain = -std::numeric_limits<double>::infinity();  // per byte
+  };
+  const auto next_run = [&](size_t s, size_t begin) {
+    Run best{begin + 1};
+    double bytes = 0.0;
+    for (size_t end = begin + 1; end <= part_lengths[s].size(); ++end) {
+      bytes += static_cast<double>(part_lengths[s][end - 1]);
+      const double gain = (errors[s][begin - 1] - errors[s][end - 1]) / std::max(bytes, 1.0);
+      if (gain > best.gain) best = {end, gain};
     }
-    if (best == part_lengths.size()) return order;
-    order.push_back({best, part_lengths[best][next[best]]});
-    ++next[best];
+    return best;
+  };
+  std::vector<Segment> order;
+  std::vector<std::pair<double, size_t>> heap;  // the gain of the next run of a stream; the first of equal ones
+  std::vector<Run> runs;
+  std::vector<size_t> next(part_lengths.size(), 1);
+  const auto is_later = [](const std::pair<double, size_t>& a, const std::pair<double, size_t>& b) {
+    return a.first != b.first ? a.first < b.first : a.second > b.second;
+  };
+  const auto push = [&](size_t s) {
+    if (next[s] >= part_lengths[s].size()) return;
+    runs[s] = next_run(s, next[s]);
+    heap.emplace_back(runs[s].gain, s);
+    std::push_heap(heap.begin(), heap.end(), is_later);
+  };
+  runs.resize(part_lengths.size());
+  for (size_t s = 0; s < part_lengths.size(); ++s) {
+    order.push_back({s, part_lengths[s][0]});
+    push(s);
   }
+  while (!heap.empty()) {
+    const size_t s = heap.front().second;
+    std::pop_heap(heap.begin(), heap.end(), is_later);
+    heap.pop_back();
+    for (; next[s] < runs[s].end; ++next[s]) order.push_back({s, part_lengths[s][next[s]]});
+    push(s);
+  }
+  return order;
 }
 
 }  // namespace lacerta

@@ -62,8 +62,8 @@ struct GatheredStream {
 };
 StatusOr<GatheredStream> GatherStream(const GltfDocument& document, const Progressive& progressive, uint64_t stream);
 
-// Where the streams' parts go: all bases first, then always the next part of the stream that lowers its error most per
-// byte. part_lengths[s] and errors[s] are parallel: one per level of stream s, base first.
+// Where the streams' parts go: all bases first, then always the next parts of the stream that lower the sum of all errors most per byte,
+// up to the part behind which they do so less. part_lengths[s] and errors[s] are parallel: one per level of stream s, base first.
 std::vector<Segment> OrderSegments(const std::vector<std::vector<uint64_t>>& part_lengths,
                                    const std::vector<std::vector<double>>& errors);
 

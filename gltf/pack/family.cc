@@ -101,6 +101,18 @@ struct Box {
   double Diagonal() const { return empty ? 0.0 : Norm(max - min); }
 };
 
+double AreaOf(const TriangleMesh& mesh) {
+  double twice = 0.0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
+    twice += Norm(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a));
+  }
+  return twice / 2;
+}
+
+// Squared errors grow by it, and so does the area: mean over the directions.
+double SquaredScale(const Transform& transform) { return std::pow(std::fabs(Determinant(transform)), 2.0 / 3.0); }
+
 }  // namespace
 
 StatusOr<Families> FindFamilies(const GltfDocument& document, const std::vector<PlacedSurface>& surfaces) {
@@ -141,11 +153,15 @@ StatusOr<Families> FindFamilies(const GltfDocument& document, const std::vector<
   for (size_t s = 0; s < surfaces.size(); ++s) {
     for (const Place& place : *surfaces[s].places) surfaces_of_mesh[static_cast<size_t>(place.mesh)].push_back(s);
   }
+  std::vector<double> areas;
+  for (const PlacedSurface& placed : surfaces) areas.push_back(AreaOf(placed.surface));
   Box scene;
   for (const Instance& instance : instances) {
+    const double scale = SquaredScale(instance.transform);
     for (const size_t s : surfaces_of_mesh[static_cast<size_t>(instance.mesh)]) {
       Family& family = result.families[result.of_surface[s]];
       family.in_scene = true;
+      family.weight += areas[s] * scale * scale;
       family.stretch = std::max(family.stretch, LargestStretch(instance.transform));
       for (const Vec3f& position : surfaces[s].surface.positions) {
         scene.Add(Apply(instance.transform, Vec3Cast<double>(position)));
@@ -156,6 +172,12 @@ StatusOr<Families> FindFamilies(const GltfDocument& document, const std::vector<
     if (!(family.stretch > 0.0)) family.stretch = 1.0;
   }
   result.scene_diagonal = scene.Diagonal();
+  for (Family& family : result.families) {
+    if (family.in_scene) continue;
+    const bool has_sizes = family.diagonal > 0.0 && result.scene_diagonal > 0.0;
+    const double scale = has_sizes ? result.scene_diagonal / family.diagonal : 1.0;
+    for (const size_t member : family.members) family.weight += areas[member] * std::pow(scale, 4.0);
+  }
   return result;
 }
 

@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/close_seams.h"
+
 namespace lacerta {
 namespace {
+
+// Of every attribute's target: sides of a seam that differ by less, as arithmetic of other tools leaves them, are no seam.
+constexpr double kUnseen = 0.05;
 
 constexpr uint64_t kSamples = 100'000;
 constexpr uint64_t kPoseSamples = 50'000;  // in each pose
@@ -34,6 +39,10 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
   original_ = std::move(original).value();
   meter_ = std::move(meter).value();
   targets_ = FamilyTargets(original_, error, targets, texel_side);
+  // Errors are measured against what came in.
+  std::vector<double> unseen = targets_.attributes;
+  for (double& tolerance : unseen) tolerance *= kUnseen;
+  CloseSeams(unseen, static_cast<double>(texel_side), &original_);
   leaves_out_ = HasOtherAttributes(primitives_, skin_, custom_);
 }
 

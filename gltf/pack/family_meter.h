@@ -34,7 +34,8 @@ class FamilyMeter {
   double error() const { return error_; }
   const Skin* skin() const { return skin_; }  // null: nothing moves the surface
 
-  const AttributedMesh& original() const { return original_; }  // without what ToAttributedMesh leaves out
+  // What is to be stored: without what ToAttributedMesh leaves out, and without seams that nobody sees (CloseSeams).
+  const AttributedMesh& original() const { return original_; }
   const SurfaceErrorMeter& meter() const { return *meter_; }
   const ErrorTargets& targets() const { return targets_; }
   bool leaves_out() const { return leaves_out_; }  // joints without a skin, application attributes that stay exact

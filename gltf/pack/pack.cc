@@ -87,7 +87,8 @@ Transmission Transmit(const std::vector<StoredStream>& streams) {
   std::vector<std::vector<double>> errors;
   for (const StoredStream& stream : streams) {
     lengths.push_back(stream.part_sizes);
-    errors.push_back(stream.description.errors);
+    errors.emplace_back();
+    for (const double error : stream.description.errors) errors.back().push_back(stream.plans[0]->weight * error * error);
     result.progressive.streams.push_back(stream.description);
   }
   result.progressive.segments = OrderSegments(lengths, errors);

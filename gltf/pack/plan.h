@@ -23,6 +23,7 @@ struct PrimitivePlan {
   std::vector<Place> places;      // at least one
   std::vector<Place> geometries;  // as in Source
   PrimitiveReport report;         // of the first place
+  double weight = 0.0;            // of its family
   bool smooth_normals = false;    // NORMAL was dropped, readers derive it
   std::optional<EncodedMesh> progressive;
   // The stream of the family, shared by its members, and which group of it this is.

@@ -101,5 +101,14 @@ TEST(Progressive, OrdersBasesFirstThenByErrorPerByte) {
   EXPECT_THAT(lengths, ::testing::ElementsAre(10, 20, 10, 100, 100, 1000));
 }
 
+TEST(Progressive, OrdersBySeveralPartsWhereTheFirstOneGainsLittle) {
+  // The second stream's first part gains nothing, both together 0.8 for 20 bytes; the first stream's parts 0.1 for 10, then the rest.
+  const auto order = OrderSegments({{10, 10, 10}, {10, 10, 10}}, {{1.0, 0.9, 0.85}, {1.0, 1.0, 0.2}});
+  std::vector<uint64_t> streams;
+  for (const Segment& segment : order) streams.push_back(segment.stream);
+  EXPECT_THAT(streams, ::testing::ElementsAre(0, 1, 1, 1, 0, 0));
+  EXPECT_EQ(OrderSegments({{7}}, {{0.5}}).size(), 1u);
+}
+
 }  // namespace
 }  // namespace lacerta

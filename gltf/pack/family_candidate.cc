@@ -1,0 +1,86 @@
+#include "pack/family_candidate.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "pack/morphs.h"
+#include "pack/rounded.h"
+#include "pack/simplified.h"
+#include "pack/simplified_morphs.h"
+
+namespace lacerta {
+namespace {
+
+uint64_t StoredBytes(const FamilyCandidate& candidate) {
+  uint64_t sum = 0;
+  for (const DracoCandidate& member : candidate.members) {
+    sum += member.encoded.bytes.size() + kDracoJsonBytes + BytesOfTargets(member.targets);
+  }
+  return sum;
+}
+
+// targets: of each member in the order of its decoded vertices; empty: none has any.
+FamilyCandidate ToCandidate(RoundedFamily rounded, std::vector<std::vector<MorphTarget>> targets) {
+  FamilyCandidate candidate;
+  for (size_t m = 0; m < rounded.members.size(); ++m) {
+    DracoCandidate member;
+    member.encoded = std::move(rounded.members[m]);
+    if (!targets.empty()) member.targets = std::move(targets[m]);
+    member.report.error = rounded.error;
+    member.report.position_bits = rounded.precisions[m].positions.bits;
+    member.report.attributes = std::move(rounded.reports[m]);
+    candidate.members.push_back(std::move(member));
+  }
+  candidate.bytes = StoredBytes(candidate);
+  return candidate;
+}
+
+// Fails with kUnsupported where morph targets cannot follow.
+StatusOr<FamilyCandidate> ToCandidate(const FamilyContext& context, RoundedFamily rounded) {
+  std::vector<std::vector<MorphTarget>> targets;
+  const std::vector<size_t>& members = context.members();
+  for (size_t m = 0; m < members.size(); ++m) {
+    const Source& source = context.scene->sources[members[m]];
+    targets.emplace_back();
+    if (source.targets.empty()) continue;
+    auto reordered = ReorderTargets({&*source.primitive, &source.targets}, rounded.precisions[m], rounded.members[m].decoded);
+    if (!reordered.has_value()) return Unsupported("has morph targets that tell apart what its other attributes do not");
+    targets.back() = std::move(*reordered);
+  }
+  return ToCandidate(std::move(rounded), std::move(targets));
+}
+
+}  // namespace
+
+StatusOr<FamilyCandidate> WithAllVertices(const FamilyContext& context, const FamilyMeter& meter, uint64_t most_bytes,
+                                          std::vector<double>* everywhere) {
+  // Vertices with other morph targets must not become one.
+  const auto targets_follow = [&](const RoundedFamily& rounded) { return ToCandidate(context, rounded).ok(); };
+  LACERTA_ASSIGN_OR_RETURN(RoundedFamily rounded, RoundFamily(meter.primitives(), meter, nullptr, {}, targets_follow, most_bytes));
+  *everywhere = std::move(rounded.everywhere);
+  return ToCandidate(context, std::move(rounded));
+}
+
+StatusOr<FamilyCandidate> Simplified(const FamilyContext& context, const FamilyMeter& meter, const std::vector<double>& everywhere) {
+  const bool held = context.options->attributes.normals_everywhere;
+  const std::vector<double> bounds = held ? everywhere : std::vector<double>();
+  FamilyCandidate candidate;
+  if (context.HasTargets()) {
+    std::vector<const std::vector<MorphTarget>*> targets;
+    for (const size_t member : context.members()) targets.push_back(&context.scene->sources[member].targets);
+    LACERTA_ASSIGN_OR_RETURN(MorphedFamily simplified, SimplifyMorphedFamily(meter, targets, context.scene->texel_side, bounds));
+    candidate = ToCandidate(std::move(simplified.rounded), std::move(simplified.targets));
+  } else {
+    LACERTA_ASSIGN_OR_RETURN(RoundedFamily simplified, SimplifyFamily(meter, bounds));
+    candidate = ToCandidate(std::move(simplified), {});
+  }
+  for (size_t m = 0; m < candidate.members.size(); ++m) {
+    candidate.members[m].report.reason =
+        "simplified from " + std::to_string(meter.primitives()[m]->triangles.size()) + " to " +
+        std::to_string(candidate.members[m].encoded.decoded.triangles.size()) + " triangles";
+  }
+  return candidate;
+}
+
+}  // namespace lacerta

@@ -1,0 +1,60 @@
+#include "pack/family_context.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pack/find_skin.h"
+#include "pack/texel_scale.h"
+
+namespace lacerta {
+namespace {
+
+constexpr double kDefaultPsnr = 70.0;
+
+bool HasJoints(const Source& source) {
+  const std::vector<Attribute>& attributes = source.primitive->attributes;
+  return std::any_of(attributes.begin(), attributes.end(), [](const Attribute& a) { return IsSkinAttribute(a.name); });
+}
+
+}  // namespace
+
+double TargetPsnr(const EncodeTarget& target) {
+  switch (target.kind) {
+    case EncodeTarget::Kind::kPsnr:
+      return target.value;
+    case EncodeTarget::Kind::kError:
+      return -20.0 * std::log10(target.value);
+    case EncodeTarget::Kind::kBytes:
+    case EncodeTarget::Kind::kBitsPerVertex:
+      break;
+  }
+  return kDefaultPsnr;
+}
+
+std::vector<const Primitive*> FamilyContext::Primitives() const {
+  std::vector<const Primitive*> primitives;
+  for (const size_t member : members()) primitives.push_back(&*scene->sources[member].primitive);
+  return primitives;
+}
+
+bool FamilyContext::HasTargets() const {
+  return std::any_of(members().begin(), members().end(), [&](size_t member) { return !scene->sources[member].targets.empty(); });
+}
+
+StatusOr<std::optional<Skin>> FamilyContext::FindSkin() const {
+  std::vector<const Source*> sources;
+  for (const size_t member : members()) sources.push_back(&scene->sources[member]);
+  if (std::none_of(sources.begin(), sources.end(), [](const Source* source) { return HasJoints(*source); })) return std::optional<Skin>();
+  LACERTA_ASSIGN_OR_RETURN(Skin skin, lacerta::FindSkin(*scene->document, sources, scene->poses));
+  return std::optional<Skin>(std::move(skin));
+}
+
+TexelScale FamilyContext::Scale() const {
+  return [scene = scene, family = family](size_t member, uint64_t set) {
+    const Source& source = scene->sources[scene->families.families[family].members[member]];
+    return TexelsPerUnit(*scene->document, source.places, set, scene->texel_side);
+  };
+}
+
+}  // namespace lacerta

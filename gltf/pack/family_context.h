@@ -1,0 +1,36 @@
+// A family of primitives in a scene, and what was asked for.
+#ifndef LACERTA_PACK_FAMILY_CONTEXT_H_
+#define LACERTA_PACK_FAMILY_CONTEXT_H_
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "document/primitive.h"
+#include "lacerta/gltf.h"
+#include "lacerta/status.h"
+#include "pack/attributed_family.h"
+#include "pack/packed_scene.h"
+#include "pack/skin.h"
+
+namespace lacerta {
+
+// The quality that a target asks for, dB; 70 where it is one in bytes, which says nothing about the precision of Draco primitives.
+double TargetPsnr(const EncodeTarget& target);
+
+struct FamilyContext {
+  const PackedScene* scene = nullptr;
+  const PackOptions* options = nullptr;
+  size_t family = 0;
+
+  const std::vector<size_t>& members() const { return scene->families.families[family].members; }
+  double Error() const { return FamilyError(scene->families, family, TargetPsnr(options->encode.target)); }  // mesh units
+  std::vector<const Primitive*> Primitives() const;
+  bool HasTargets() const;  // of morphs
+  StatusOr<std::optional<Skin>> FindSkin() const;  // what moves the family; empty where nothing does
+  TexelScale Scale() const;  // refers to the scene
+};
+
+}  // namespace lacerta
+
+#endif  // LACERTA_PACK_FAMILY_CONTEXT_H_

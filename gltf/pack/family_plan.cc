@@ -1,0 +1,224 @@
+#include "pack/family_plan.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "document/normals.h"
+#include "lacerta/surface_distance.h"
+#include "pack/family_candidate.h"
+#include "pack/family_stream.h"
+#include "pack/morphs.h"
+
+namespace lacerta {
+namespace {
+
+// JSON of LACERTA_mesh_progressive beyond that of KHR_draco_mesh_compression.
+constexpr uint64_t kProgressiveJsonBytes = 350;
+
+bool IsRate(const EncodeTarget& target) {
+  return target.kind == EncodeTarget::Kind::kBytes || target.kind == EncodeTarget::Kind::kBitsPerVertex;
+}
+
+void AddReason(const std::string& reason, PrimitiveReport* report) {
+  report->reason += (report->reason.empty() ? "" : "; ") + reason;
+}
+
+// Whether a stream of the whole family with all attributes is what is stored: it is smaller than `least` bytes, or levels
+// are wanted whatever they take. Makes it the plan then.
+bool PlanStream(const FamilyContext& context, const FamilyMeter& meter, uint64_t least, std::vector<PrimitivePlan>* plans) {
+  const PackOptions& options = *context.options;
+  const LevelChoice levels = options.encode.levels;
+  if (levels == LevelChoice::kNever || options.fallback != Fallback::kDraco) return false;
+  if (!options.simplify && levels != LevelChoice::kAlways) return false;
+  if (context.HasTargets()) return false;
+  size_t most_bytes = std::numeric_limits<size_t>::max();
+  if (levels != LevelChoice::kAlways) {
+    const uint64_t json = kDracoJsonBytes * plans->size() + kProgressiveJsonBytes;
+    if (least <= json) return false;
+    most_bytes = least - json;
+  }
+  StatusOr<FamilyStream> stream = StreamFamily(meter, options.encode.effort, most_bytes);
+  if (!stream.ok()) {
+    for (PrimitivePlan& plan : *plans) AddReason("no stream: " + stream.status().message(), &plan.report);
+    return false;
+  }
+  const auto shared = std::make_shared<const FamilyStream>(std::move(stream).value());
+  for (size_t m = 0; m < plans->size(); ++m) {
+    PrimitivePlan& plan = (*plans)[m];
+    PrimitiveReport& report = plan.report;
+    plan.family = shared;
+    plan.group = m;
+    report.storage = PrimitiveStorage::kProgressive;
+    report.reason = "with its attributes in " + std::to_string(shared->part_sizes.size() - 1) + " levels";
+    report.attributes = shared->reports[m];
+    report.encode = shared->encode;
+    report.error = shared->description.errors.back();
+    report.target_error = context.Error();
+    // The refinement is that of all; the first carries it.
+    report.bytes_after = shared->description.base_lengths[m] + (m == 0 ? shared->bytes.size() - shared->part_sizes[0] : 0);
+  }
+  return true;
+}
+
+// The smallest of what there is, Draco with all vertices and Draco of a simplified surface, for a whole family: one that
+// stayed as it is would come apart from neighbors that are rounded.
+void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plans) {
+  const bool is_stream = (*plans)[0].progressive.has_value();
+  uint64_t least = 0;
+  for (const PrimitivePlan& plan : *plans) least += plan.report.bytes_before;
+  if (is_stream) least = std::min(least, (*plans)[0].progressive->stream.size() + kDracoJsonBytes + kProgressiveJsonBytes);
+  std::vector<double> everywhere;
+  const StatusOr<std::optional<Skin>> skin = context.FindSkin();
+  const FamilyMeter meter(context.Primitives(), context.Error(), context.options->attributes, context.scene->texel_side,
+                          context.Scale(), skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
+  const uint64_t most_bytes = is_stream ? least : std::numeric_limits<uint64_t>::max();
+  StatusOr<FamilyCandidate> chosen = WithAllVertices(context, meter, most_bytes, &everywhere);
+  std::string against = chosen.ok() ? "" : chosen.status().message();
+  if (chosen.ok() && chosen.value().bytes >= least) {
+    against = "compressed it would be larger (" + std::to_string(chosen.value().bytes) + " bytes with their description)";
+    chosen = Unsupported(against);
+  }
+  if (chosen.ok()) least = chosen.value().bytes;
+  std::string simplified_reason;
+  if (context.options->simplify && !is_stream) {  // streams have tried a simplified surface themselves
+    StatusOr<FamilyCandidate> simplified =
+        skin.ok() ? Simplified(context, meter, everywhere) : StatusOr<FamilyCandidate>(skin.status());
+    if (simplified.ok() && simplified.value().bytes < least) {
+      chosen = std::move(simplified);
+      least = chosen.value().bytes;
+    } else {
+      simplified_reason = simplified.ok() ? "simplified it would be larger" : "not simplified: " + simplified.status().message();
+    }
+  }
+  if (!is_stream && PlanStream(context, meter, least, plans)) return;
+  for (size_t m = 0; m < plans->size(); ++m) {
+    PrimitivePlan& plan = (*plans)[m];
+    if (!chosen.ok()) {
+      if (!is_stream) AddReason(against, &plan.report);
+      continue;
+    }
+    DracoCandidate& candidate = chosen.value().members[m];
+    PrimitiveReport& report = plan.report;
+    if (is_stream) {
+      report.reason = "all its vertices in Draco are smaller than a stream (" +
+                      std::to_string(plan.progressive->stream.size()) + " bytes)";
+      report.encode = {};
+      plan.progressive.reset();
+      plan.smooth_normals = false;
+    }
+    if (!candidate.report.reason.empty()) AddReason(candidate.report.reason, &report);
+    if (!simplified_reason.empty()) AddReason(simplified_reason, &report);
+    report.storage = PrimitiveStorage::kDraco;
+    report.bytes_after = candidate.encoded.bytes.size() + BytesOfTargets(candidate.targets);
+    report.error = candidate.report.error;
+    report.target_error = context.Error();
+    report.position_bits = candidate.report.position_bits;
+    report.attributes = std::move(candidate.report.attributes);
+    plan.targets = std::move(candidate.targets);
+    plan.draco = std::move(candidate.encoded);
+  }
+}
+
+// An error is the scene's.
+EncodeOptions OptionsOf(const FamilyContext& context) {
+  EncodeOptions options = context.options->encode;
+  const double diagonal = context.scene->families.families[context.family].diagonal;
+  if (options.target.kind == EncodeTarget::Kind::kPsnr) {
+    options.target.value = Psnr(context.Error(), diagonal);
+  } else if (options.target.kind == EncodeTarget::Kind::kError && diagonal > 0.0) {
+    options.target.value = context.Error() / diagonal;
+  }
+  return options;
+}
+
+Status PlanProgressive(const Source& source, const EncodeOptions& options, PrimitivePlan* plan) {
+  PrimitiveReport& report = plan->report;
+  StatusOr<EncodedMesh> encoded = EncodeMesh(Surface(*source.primitive), options);
+  if (encoded.status().code() == StatusCode::kInvalidArgument) return encoded.status();
+  if (!encoded.ok()) {
+    report.reason = encoded.status().message();
+    return Status();
+  }
+  const EncodedMesh& mesh = encoded.value();
+  if (mesh.part_sizes.empty() || mesh.part_sizes.size() != mesh.report.levels.size()) {
+    return InternalError("the encoder reported another number of levels than it wrote");
+  }
+  report.storage = PrimitiveStorage::kProgressive;
+  report.reason = mesh.report.reason;
+  report.bytes_after = mesh.stream.size();
+  report.encode = mesh.report;
+  report.target_error = options.target.kind == EncodeTarget::Kind::kPsnr
+                            ? DistanceOfPsnr(options.target.value, mesh.report.diagonal)
+                        : options.target.kind == EncodeTarget::Kind::kError ? options.target.value * mesh.report.diagonal
+                                                                            : 0.0;
+  plan->progressive = std::move(encoded).value();
+  return Status();
+}
+
+}  // namespace
+
+PrimitivePlan UntouchedPlan(const PackedScene& scene, size_t index) {
+  const Source& source = scene.sources[index];
+  PrimitivePlan plan;
+  plan.places = source.places;
+  plan.geometries = source.geometries;
+  plan.report.mesh = source.places[0].mesh;
+  plan.report.primitive = source.places[0].primitive;
+  plan.report.name = AsString(Find(*FindElement(scene.document->json, "meshes", source.places[0].mesh), "name"));
+  plan.report.reason = source.reason;
+  plan.report.bytes_before = plan.report.bytes_after = source.stored_bytes + BytesOfTargets(source.targets);
+  return plan;
+}
+
+std::string ReasonAgainstProgressive(const FamilyContext& context, size_t index, bool* smooth) {
+  const Source& source = context.scene->sources[index];
+  for (const Place& place : source.places) {
+    const uint64_t count = ArraySize(*FindElement(context.scene->document->json, "meshes", place.mesh), "primitives");
+    if (count > 1) return "its mesh has " + std::to_string(count) + " primitives, which would not stay joined";
+  }
+  if (context.members().size() > 1) {
+    return "it touches another mesh, from which it would come apart";
+  }
+  if (!source.targets.empty()) return "has morph targets";
+  for (const Attribute& attribute : source.primitive->attributes) {
+    if (attribute.name != "POSITION" && attribute.name != "NORMAL") return "has the attribute " + attribute.name;
+  }
+  const Attribute* normal = source.primitive->Find("NORMAL");
+  if (normal == nullptr) return "";
+  if (normal->data.components != 3) return "its normals are not of type VEC3";
+  std::vector<Vec3f> normals;
+  for (uint64_t v = 0; v < source.primitive->num_vertices; ++v) {
+    normals.push_back({normal->data.Float(v, 0), normal->data.Float(v, 1), normal->data.Float(v, 2)});
+  }
+  *smooth = NormalsAreDerivable(Surface(*source.primitive), normals);
+  return *smooth ? "" : "its normals hold creases that the surface alone does not tell";
+}
+
+StatusOr<std::vector<PrimitivePlan>> PlanFamily(const FamilyContext& context) {
+  const PackOptions& options = *context.options;
+  std::vector<PrimitivePlan> plans;
+  for (const size_t member : context.members()) {
+    PrimitivePlan plan = UntouchedPlan(*context.scene, member);
+    plan.weight = context.scene->families.families[context.family].weight;
+    plan.report.reason = ReasonAgainstProgressive(context, member, &plan.smooth_normals);
+    if (plan.report.reason.empty()) {
+      const Status status = PlanProgressive(context.scene->sources[member], OptionsOf(context), &plan);
+      if (!status.ok()) return status.WithContext(PlaceName(*context.scene->document, plan.places[0]));
+    }
+    plans.push_back(std::move(plan));
+  }
+  const bool is_stream = plans[0].progressive.has_value(), plain = options.fallback == Fallback::kPlain;
+  if (is_stream && (options.encode.levels == LevelChoice::kAlways || IsRate(options.encode.target) || plain)) return plans;
+  if (!plain) {
+    PlanTogether(context, &plans);
+    return plans;
+  }
+  for (PrimitivePlan& plan : plans) AddReason("left as it is so that every reader opens the asset", &plan.report);
+  return plans;
+}
+
+}  // namespace lacerta
