@@ -4,7 +4,7 @@ import {copyFileSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {drawCurves} from './curves.mjs';
-import {loadWhole, openViewer, pictures, scanAsset} from './support.mjs';
+import {loadWhole, openViewer, pictures, scanAsset, texturedAsset} from './support.mjs';
 import {example, root, scratch} from '../node/support.mjs';
 
 let viewer, page, asset;
@@ -178,6 +178,27 @@ test('a download that is stopped goes on where it ended', async () => {
   assert.equal(await problem(), '');
   await page.evaluate('window.model.resume()');
   await page.waitForFunction('window.model.surfaces[0].isComplete', null, {timeout: 20000});
+});
+
+test('textures come after the surfaces, onto the same materials; a file that ends before them is told', async () => {
+  const {path, imageBytes} = await texturedAsset('textured.glb');
+  for (const mode of ['stream', 'range']) {
+    const seen = await page.evaluate(async ([url, how]) => {
+      const gltf = await window.viewer.show(url, {mode: how, name: 'textured'}), {model} = window;
+      let mesh;
+      gltf.scene.traverse(object => { if (object.isMesh) mesh = object; });
+      const {material} = mesh, before = Boolean(material.map), events = [];
+      model.addEventListener('complete', () => events.push('complete'));
+      await new Promise(resolve => model.addEventListener('textures', resolve, {once: true}));
+      return {before, events, part: model.surfaces[0].part, last: model.surfaces[0].lastPart, same: mesh.material === material, width: material.map?.image.width};
+    }, [`/assets/textured.glb?kbps=200&mode=${mode}`, mode]);
+    assert.deepEqual(seen, {before: false, events: ['complete'], part: seen.last, last: seen.last, same: true, width: 256});
+    assert.equal(await problem(), '');
+  }
+  writeFileSync(join(scratch, 'no_textures.glb'), readFileSync(path).subarray(0, -imageBytes));
+  await page.evaluate(() => window.viewer.show('/assets/no_textures.glb', {mode: 'stream', name: 'cut'}));
+  await page.waitForFunction('window.model.surfaces[0].isComplete && document.getElementById("problem").textContent !== ""');
+  assert.equal(await problem(), 'the file ends early: its textures are missing');
 });
 
 test('groups of a stream with attributes refine together, each with its own attributes, and no crack opens between them', async () => {
