@@ -16,13 +16,12 @@ mkdirSync(pictures, {recursive: true});
 const flags = ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
   '--disable-background-networking', '--disable-component-update', '--disable-sync', '--js-flags=--expose-gc'];
 
-/** A scan, or where there is none a bumpy torus, packed at `psnr` dB, and its Draco twin. */
-export async function scanAsset(psnr) {
-  const horse = join(dataFolder, 'horse.ply'), torus = join(scratch, 'torus.obj');
-  if (!existsSync(horse)) writeTorus(torus, 240, 160);
-  const name = existsSync(horse) ? 'horse' : 'torus';
-  const glb = pack(`${name}_${psnr}.glb`, name === 'horse' ? horse : torus, '--psnr', String(psnr), '--levels', 'always');
-  const twin = await writeDracoTwin(name === 'horse' ? horse : torus, glb);
+/** The scan of that name, or where there is none a bumpy torus, packed at `psnr` dB, and its Draco twin. */
+export async function scanAsset(scan, psnr) {
+  const found = existsSync(join(dataFolder, `${scan}.ply`)), name = found ? scan : 'torus', mesh = join(found ? dataFolder : scratch, found ? `${scan}.ply` : 'torus.obj');
+  if (!found && !existsSync(mesh)) writeTorus(mesh, 240, 160);
+  const glb = pack(`${name}_${psnr}.glb`, mesh, '--psnr', String(psnr), '--levels', 'always');
+  const twin = await writeDracoTwin(mesh, glb);
   return {name, glb, twin: twin.path, file: `/assets/${name}_${psnr}.glb`, twinFile: `/assets/${name}_${psnr}.draco.glb`};
 }
 
