@@ -69,9 +69,9 @@ await run('em++', [...flags, ...linking, ...await compileAll(), '-o', join(objec
 // The optimizer, which comes with Emscripten, makes small functions part of their callers: that makes decoding twice as fast. Then loops and branches are
 // made anew until nothing comes off.
 const optimize = (...options) => run('wasm-opt', [...options, '--enable-bulk-memory', '--enable-sign-ext', '--enable-nontrapping-float-to-int']);
-await optimize('-O3', '--inlining-optimizing', '--flexible-inline-max-function-size', '8', join(objects, 'lacerta.wasm'), '-o', join(objects, 'inlined.wasm'));
+await optimize('-O3', '--inlining-optimizing', '--flexible-inline-max-function-size', '7', join(objects, 'lacerta.wasm'), '-o', join(objects, 'inlined.wasm'));
 const again = ['--flatten', '--rereloop', '-Oz'];
-await optimize(...again, ...again, ...again, '-Oz', '--converge', join(objects, 'inlined.wasm'), '-o', join(dist, 'lacerta.wasm'));
+await optimize(...again, ...again, '-Oz', '--converge', join(objects, 'inlined.wasm'), '-o', join(dist, 'lacerta.wasm'));
 const wasm = readFileSync(join(dist, 'lacerta.wasm'));
 // Deflated, then as base64: what comes over the wire is as small as the separate file.
 writeFileSync(join(dist, 'binary.js'), `// Made by build.mjs: lacerta.wasm, deflated.\nexport default '${deflateRawSync(wasm, {level: 9}).toString('base64')}';\n`);
