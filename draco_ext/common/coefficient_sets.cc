@@ -5,6 +5,10 @@
 
 namespace lacerta {
 
+QuantizedLevel ZeroLevel(uint32_t num_edges) {
+  return {std::vector<int32_t>(num_edges), std::vector<int32_t>(size_t{2} * num_edges)};
+}
+
 float RoundStep(float step) {
   if (!std::isnormal(step) || step < 0) return 0.0f;
   uint32_t bits;

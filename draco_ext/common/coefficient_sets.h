@@ -17,6 +17,8 @@ struct QuantizedLevel {
   std::vector<int32_t> tangential;  // 2 x #E: t1, t2 of edge 0, t1, t2 of edge 1, ...
 };
 
+QuantizedLevel ZeroLevel(uint32_t num_edges);
+
 // Unit of LevelSteps' biases: 1/32 of a step.
 inline constexpr int kBiasUnit = 32;
 inline constexpr int kMaxBias = 15;

@@ -30,11 +30,12 @@ bool IsSmooth(const Topology& t, uint32_t edge) {
 
 std::vector<Vec3f> CurveOffsets(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {
   const std::vector<Vec3f> normals = VertexNormals(coarse, positions);
+  const std::vector<Vec3f> frame_normals = FrameNormals(coarse, positions, midpoints);
   std::vector<Vec3f> offsets(coarse.num_edges());
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     if (!IsSmooth(coarse, e)) continue;
     const auto& [a, b] = coarse.edges[e];
-    const Vec3f normal = FrameNormalAt(coarse, positions, midpoints, e);
+    const Vec3f& normal = frame_normals[e];
     const Vec3f side = positions[b] - positions[a];
     // The tangents are the side less its part along the normals: at the middle they raise the curve by an eighth of their difference.
     const Vec3f hermite = (normals[b] * Dot(side, normals[b]) - normals[a] * Dot(side, normals[a])) * 0.125f;

@@ -1,5 +1,6 @@
 #include "common/local_frame.h"
 
+#include <array>
 #include <cmath>
 
 namespace lacerta {
@@ -23,6 +24,17 @@ LocalFrame FrameAround(const Topology& coarse, Span<const Vec3f> positions, uint
   return frame;
 }
 
+using FaceAreas = std::array<Vec3f, 4>;  // area vectors of the triangles at corners 0, 1, 2 and in the middle
+
+std::vector<FaceAreas> AreasOf(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {
+  std::vector<FaceAreas> areas(coarse.num_faces());
+  for (uint32_t f = 0; f < coarse.num_faces(); ++f) {
+    const SplitFace split(coarse, positions, midpoints, f);
+    areas[f] = {split.AtCorner(0), split.AtCorner(1), split.AtCorner(2), split.InMiddle()};
+  }
+  return areas;
+}
+
 }  // namespace
 
 Vec3f AnyOrthogonal(const Vec3f& n) {
@@ -31,32 +43,9 @@ Vec3f AnyOrthogonal(const Vec3f& n) {
   return Normalized(axis - n * Dot(axis, n));
 }
 
-Vec3f FrameNormalAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints, uint32_t edge) {
-  Vec3f area;
-  for (const uint32_t face : coarse.edge_faces[edge]) {
-    if (face == kNone) continue;
-    const SplitFace split(coarse, positions, midpoints, face);
-    const int k = EdgeCorner(coarse, face, edge);
-    area += split.InMiddle() + split.AtCorner((k + 1) % 3) + split.AtCorner((k + 2) % 3);
-  }
-  return NormalOf(area);
-}
-
-LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints,
-                        uint32_t edge) {
-  return FrameAround(coarse, positions, edge, FrameNormalAt(coarse, positions, midpoints, edge));
-}
-
-std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,
-                                           const std::vector<Vec3f>& midpoints) {
-  std::vector<std::array<Vec3f, 4>> areas;  // #F: of the triangles at corners 0, 1, 2 and in the middle
-  areas.reserve(coarse.num_faces());
-  for (uint32_t f = 0; f < coarse.num_faces(); ++f) {
-    const SplitFace split(coarse, positions, midpoints, f);
-    areas.push_back({split.AtCorner(0), split.AtCorner(1), split.AtCorner(2), split.InMiddle()});
-  }
-  std::vector<LocalFrame> frames;
-  frames.reserve(coarse.num_edges());
+std::vector<Vec3f> FrameNormals(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {
+  const std::vector<FaceAreas> areas = AreasOf(coarse, positions, midpoints);
+  std::vector<Vec3f> normals(coarse.num_edges());
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     Vec3f area;
     for (const uint32_t face : coarse.edge_faces[e]) {
@@ -64,8 +53,29 @@ std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::ve
       const int k = EdgeCorner(coarse, face, e);
       area += areas[face][3] + areas[face][(k + 1) % 3] + areas[face][(k + 2) % 3];
     }
-    frames.push_back(FrameAround(coarse, positions, e, NormalOf(area)));
+    normals[e] = NormalOf(area);
   }
+  return normals;
+}
+
+LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints,
+                        uint32_t edge) {
+  Vec3f area;
+  for (const uint32_t face : coarse.edge_faces[edge]) {
+    if (face == kNone) continue;
+    const SplitFace split(coarse, positions, midpoints, face);
+    const int k = EdgeCorner(coarse, face, edge);
+    area += split.InMiddle() + split.AtCorner((k + 1) % 3) + split.AtCorner((k + 2) % 3);
+  }
+  return FrameAround(coarse, positions, edge, NormalOf(area));
+}
+
+std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,
+                                           const std::vector<Vec3f>& midpoints) {
+  const std::vector<Vec3f> normals = FrameNormals(coarse, positions, midpoints);
+  std::vector<LocalFrame> frames;
+  frames.reserve(coarse.num_edges());
+  for (uint32_t e = 0; e < coarse.num_edges(); ++e) frames.push_back(FrameAround(coarse, positions, e, normals[e]));
   return frames;
 }
 

@@ -44,8 +44,8 @@ struct SplitFace {
 LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions,
                         Span<const Vec3f> predicted_midpoints, uint32_t edge);
 
-// Its normal alone.
-Vec3f FrameNormalAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> predicted_midpoints, uint32_t edge);
+// Normals of the frames of all edges: #E; the same bit by bit.
+std::vector<Vec3f> FrameNormals(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> predicted_midpoints);
 
 // Frames of all edges: #E.
 std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,

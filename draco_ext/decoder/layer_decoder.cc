@@ -1,7 +1,6 @@
 #include "decoder/layer_decoder.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -13,8 +12,6 @@ namespace lacerta {
 namespace {
 
 constexpr int kLevelsAhead = 2;
-
-bool IsFinite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 }  // namespace
 
@@ -55,9 +52,7 @@ Status LayerDecoder::Reach(int level) {
 void LayerDecoder::Decode(const LayerPayload& segment) {
   const auto i = static_cast<size_t>(segment.segment.level) - 1;
   const Topology& coarse = topologies_[i];
-  QuantizedLevel values;
-  values.normal.resize(coarse.num_edges());
-  values.tangential.resize(size_t{2} * coarse.num_edges());
+  QuantizedLevel values = ZeroLevel(coarse.num_edges());
   RangeDecoder decoder(segment.payload);
   CodeLayerSegment(coarse, i > 0 ? &topologies_[i - 1] : nullptr, steps_[i], segment.segment, &state_, std::move(values), &decoder);
   lowest_changed_ = std::min(lowest_changed_, segment.segment.level);
@@ -105,7 +100,7 @@ Status LayerDecoder::Show(SemiRegularMesh* mesh) {
     const LayeredLevel& known = state_.levels[i];
     SynthesizeLevel(topologies_[i], stencils_, known.steps, known.values, &positions);
   }
-  if (!std::all_of(positions.begin(), positions.end(), IsFinite)) return InvalidData("a segment makes positions that are not finite");
+  if (!AreFinite(positions)) return InvalidData("a segment makes positions that are not finite");
   mesh->positions = std::move(positions);
   mesh->num_levels = shown_ = std::max(shown_, wanted);
   lowest_changed_ = last_level_ + 1;

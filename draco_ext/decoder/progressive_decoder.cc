@@ -69,8 +69,6 @@ StatusOr<Topology> ReadTopology(const BaseMesh& base, Span<const uint8_t> payloa
   return CodeBaseTags(base.lattice, base.triangles, tags, &decoder);
 }
 
-bool IsFinite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
 }  // namespace
 
 struct ProgressiveDecoder::State {
@@ -221,17 +219,13 @@ Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const u
 
 Status ProgressiveDecoder::State::AddPositions(const LevelSteps& steps, RangeDecoder* decoder) {
   QuantizedLevel quantized;
-  if (!steps.is_silent()) {
-    quantized.normal.resize(topology.num_edges());
-    quantized.tangential.resize(size_t{2} * topology.num_edges());
-  }
+  if (!steps.is_silent()) quantized = ZeroLevel(topology.num_edges());
   const LevelSteps finer = mesh.num_levels + 1 < last_level() ? header->steps[mesh.num_levels + 1] : LevelSteps();
   coding.normal_continues = finer.normal_step > 0;
   coding.tangential_continues = finer.tangential_step > 0;
   CodeLevel(topology, steps, &coding, &quantized, decoder);
   SynthesizeLevel(topology, *stencils, steps, quantized, &mesh.positions);
-  const auto first_new = mesh.positions.begin() + topology.num_vertices;
-  if (std::all_of(first_new, mesh.positions.end(), IsFinite)) return Status();
+  if (AreFinite(Span<const Vec3f>(mesh.positions).Subspan(topology.num_vertices))) return Status();
   return InvalidData("level " + std::to_string(mesh.num_levels + 1) + " has positions that are not finite");
 }
 

@@ -52,4 +52,10 @@ void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const Le
   AddDetails(coarse, steps, quantized, positions);
 }
 
+bool AreFinite(Span<const Vec3f> positions) {
+  float sum = 0.0f;  // zero, or NaN: without a branch per coordinate
+  for (const Vec3f& p : positions) sum += p.x * 0.0f + p.y * 0.0f + p.z * 0.0f;
+  return sum == 0.0f;
+}
+
 }  // namespace lacerta

@@ -24,6 +24,9 @@ void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const Le
 // a silent level that is not curved.
 void AddDetails(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, std::vector<Vec3f>* positions);
 
+// Whether no coordinate is infinite or no number.
+bool AreFinite(Span<const Vec3f> positions);
+
 }  // namespace lacerta
 
 #endif  // LACERTA_DECODER_SYNTHESIS_H_

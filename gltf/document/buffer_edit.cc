@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <limits>
-#include <map>
+#include <tuple>
 #include <utility>
 
 namespace lacerta {
@@ -79,19 +80,45 @@ void ShrinkView(uint64_t index, GltfDocument* document) {
   view.erase("target");
 }
 
+// What is needed to show anything, the progressive streams, and images, which a surface can be shown without: the order in
+// which a client that reads a file as it arrives wants them.
+enum class Turn { kNeeded, kStreams, kImage };
+
+std::vector<Turn> TurnsOfViews(const Json& json) {
+  std::vector<Turn> turns(ArraySize(json, "bufferViews"), Turn::kNeeded);
+  const auto set = [&](const Json* object, const char* member, Turn turn) {
+    const std::optional<uint64_t> view = object == nullptr ? std::nullopt : AsIndex(Find(*object, member));
+    if (view.has_value() && *view < turns.size()) turns[static_cast<size_t>(*view)] = turn;
+  };
+  for (uint64_t i = 0; i < ArraySize(json, "images"); ++i) set(FindElement(json, "images", i), "bufferView", Turn::kImage);
+  const Json* extensions = Find(json, "extensions");
+  set(extensions == nullptr ? nullptr : Find(*extensions, "LACERTA_mesh_progressive"), "data", Turn::kStreams);
+  return turns;
+}
+
 struct Interval {
+  uint64_t buffer = 0;
   uint64_t begin = 0;
   uint64_t end = 0;
+  Turn turn = Turn::kNeeded;
   uint64_t moved_to = 0;
 };
 
-// Disjoint parts of one buffer, ascending, that cover all its views.
+// Of two views of the same bytes; bases are seen through views of their own, too.
+Turn TurnOfBoth(Turn a, Turn b) {
+  return a == Turn::kStreams || b == Turn::kStreams ? Turn::kStreams : std::min(a, b);
+}
+
+// Disjoint parts of the buffers that cover all their views, by buffers and then ascending.
 std::vector<Interval> Union(std::vector<Interval> intervals) {
-  std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+  std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) {
+    return std::tie(a.buffer, a.begin) < std::tie(b.buffer, b.begin);
+  });
   std::vector<Interval> merged;
   for (const Interval& interval : intervals) {
-    if (!merged.empty() && interval.begin < merged.back().end) {
+    if (!merged.empty() && interval.buffer == merged.back().buffer && interval.begin < merged.back().end) {
       merged.back().end = std::max(merged.back().end, interval.end);
+      merged.back().turn = TurnOfBoth(merged.back().turn, interval.turn);
     } else {
       merged.push_back(interval);
     }
@@ -234,19 +261,21 @@ void DropUnusedViews(const std::set<uint64_t>& candidates, GltfDocument* documen
 }
 
 Status MergeBuffers(GltfDocument* document) {
-  std::map<uint64_t, std::vector<Interval>> used;
   const uint64_t num_views = ArraySize(document->json, "bufferViews");
+  const std::vector<Turn> turns = TurnsOfViews(document->json);
+  std::vector<Interval> used;
   for (uint64_t i = 0; i < num_views; ++i) {
     LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(*document, i));
     const uint64_t buffer = *AsIndex(Find(*FindElement(document->json, "bufferViews", i), "buffer"));
     const auto begin = static_cast<uint64_t>(bytes.data() - document->buffers[static_cast<size_t>(buffer)].data());
-    if (!bytes.empty()) used[buffer].push_back({begin, begin + bytes.size(), 0});
+    if (!bytes.empty()) used.push_back({buffer, begin, begin + bytes.size(), turns[static_cast<size_t>(i)]});
   }
+  used = Union(std::move(used));
   Bytes merged;
-  for (auto& [buffer, intervals] : used) {
-    intervals = Union(std::move(intervals));
-    const Bytes& source = document->buffers[static_cast<size_t>(buffer)];
-    for (Interval& interval : intervals) {
+  for (const Turn turn : {Turn::kNeeded, Turn::kStreams, Turn::kImage}) {
+    for (Interval& interval : used) {
+      if (interval.turn != turn) continue;
+      const Bytes& source = document->buffers[static_cast<size_t>(interval.buffer)];
       while (merged.size() % kAlignment != interval.begin % kAlignment) merged.push_back(0);
       interval.moved_to = merged.size();
       merged.insert(merged.end(), source.begin() + static_cast<std::ptrdiff_t>(interval.begin),
@@ -259,10 +288,15 @@ Status MergeBuffers(GltfDocument* document) {
   }
   for (uint64_t i = 0; i < num_views; ++i) {
     Json& view = document->json["bufferViews"][static_cast<size_t>(i)];
-    const uint64_t offset = AsIndex(Find(view, "byteOffset")).value_or(0);
-    uint64_t moved = 0;
-    for (const Interval& interval : used[*AsIndex(Find(view, "buffer"))]) {
-      if (offset >= interval.begin && offset < interval.end) moved = interval.moved_to + (offset - interval.begin);
+    const std::pair<uint64_t, uint64_t> place = {*AsIndex(Find(view, "buffer")),
+                                                 AsIndex(Find(view, "byteOffset")).value_or(0)};
+    const auto after = std::upper_bound(used.begin(), used.end(), place, [](const auto& wanted, const Interval& interval) {
+      return wanted < std::make_pair(interval.buffer, interval.begin);
+    });
+    uint64_t moved = 0;  // of views without bytes
+    if (after != used.begin()) {
+      const Interval& interval = *std::prev(after);
+      if (place.first == interval.buffer && place.second < interval.end) moved = interval.moved_to + (place.second - interval.begin);
     }
     view["buffer"] = 0;
     view["byteOffset"] = moved;

@@ -154,7 +154,6 @@ Status StoreProgressive(const std::vector<StoredStream>& streams, Fallback fallb
     external->assign(bases_end, transmission.data.end());
     transmission.data.erase(bases_end, transmission.data.end());
   }
-  // The last buffer, so that a file cut short loses refinements only.
   const uint64_t length = transmission.data.size();
   const uint64_t buffer = AddBuffer(std::move(transmission.data), document);
   transmission.progressive.data = AddBufferView(buffer, 0, length, document);

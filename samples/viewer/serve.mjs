@@ -1,15 +1,17 @@
-// Serves the viewer: npm start, in plugin/web. Builds the package and packs a few assets first, where that has not been done.
+// Serves the viewer: npm start [-- FOLDER], in plugin/web. Builds the package where that has not been done, and packs a few assets where the folder of
+// assets (build/viewer_assets) has none.
 //   LACERTA_COMMAND  the native command, if not in build/     PORT  default 8080
 // Any static server that honours Range does as well; this one can also be slow: ?kbps=100 at the end of an asset's address.
 import {execFileSync} from 'node:child_process';
 import {existsSync, mkdirSync, readdirSync} from 'node:fs';
 import {createServer} from 'node:http';
 import {createRequire} from 'node:module';
-import {basename, join} from 'node:path';
+import {basename, join, resolve} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
-const web = join(here, '../../plugin/web'), assets = join(here, '../../build/viewer_assets');
+const web = join(here, '../../plugin/web'), isMain = process.argv[1] === fileURLToPath(import.meta.url);
+const assets = resolve(isMain && process.argv[2] || join(here, '../../build/viewer_assets'));
 const require = createRequire(join(web, 'package.json'));
 const {default: sirv} = await import(pathToFileURL(require.resolve('sirv')).href);
 
@@ -80,7 +82,7 @@ async function prepare() {
   }
 }
 
-if (process.argv[1] === fileURLToPath(import.meta.url)) {
+if (isMain) {
   await prepare();
   const server = await serve(viewerRoots, Number(process.env.PORT ?? 8080));
   console.log(`http://localhost:${server.address().port}/`);

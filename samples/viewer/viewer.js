@@ -38,6 +38,7 @@ class View {
     this.scene.remove(this.gltf.scene);
     this.gltf.scene.traverse(object => {
       object.geometry?.dispose();
+      for (const value of Object.values(object.material ?? {})) if (value?.isTexture) value.dispose();
       object.material?.dispose();
     });
     this.gltf = undefined;

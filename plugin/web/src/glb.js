@@ -11,21 +11,62 @@ export function readHead(bytes) {
   return {json: JSON.parse(new TextDecoder().decode(bytes.subarray(20, 20 + length))), binOffset: 28 + length};
 }
 
-/** Where in the first buffer the bytes lie that have to be there before anything is shown: [{begin, end}], bases of streams included. */
-export function neededRanges(json, progressive) {
-  const ranges = [];
-  json.bufferViews.forEach((view, i) => {
-    if (view.buffer !== 0 || i === progressive.data) return;
-    const begin = view.byteOffset ?? 0;
-    ranges.push({begin, end: begin + view.byteLength});
+const rangeOf = ({byteOffset = 0, byteLength}) => ({begin: byteOffset, end: byteOffset + byteLength});
+
+// The bufferViews of images that nothing else refers to.
+function imageViews(json) {
+  const {images = [], ...rest} = json, views = new Set(images.map(image => image.bufferView));
+  JSON.stringify(rest, (key, value) => {
+    if (key === 'bufferView') views.delete(value);
+    return value;
   });
+  return views;
+}
+
+/** Where images lie in the first buffer: [{begin, end}]. Surfaces can be shown without them. */
+export function imageRanges(json) {
+  const images = imageViews(json);
+  return json.bufferViews.filter((view, i) => view.buffer === 0 && images.has(i)).map(rangeOf);
+}
+
+/** Where in the first buffer the bytes lie that have to be there before anything is shown: [{begin, end}], bases of streams included, images not. */
+export function neededRanges(json, progressive) {
+  const images = imageViews(json);
+  const ranges = json.bufferViews.filter((view, i) => view.buffer === 0 && i !== progressive.data && !images.has(i)).map(rangeOf);
   const bases = progressive.order.filter(segment => segment.part === 0);
   const data = json.bufferViews[progressive.data];
   if (data.buffer === 0) {
-    const begin = data.byteOffset ?? 0;
-    ranges.push({begin, end: Math.min(begin + data.byteLength, begin + Math.max(0, ...bases.map(base => base.offset + base.length)))});
+    const {begin, end} = rangeOf(data);
+    ranges.push({begin, end: Math.min(end, begin + Math.max(0, ...bases.map(base => base.offset + base.length)))});
   }
   return ranges;
+}
+
+/** Ranges in order, those that touch or lie close as one. */
+export function joined(ranges) {
+  const result = [];
+  for (const range of [...ranges].sort((a, b) => a.begin - b.begin)) {
+    const last = result.at(-1);
+    if (last && range.begin <= last.end + 4096) last.end = Math.max(last.end, range.end);
+    else result.push({...range});
+  }
+  return result;
+}
+
+/** The front of a file, as its bytes come in. */
+export class GrowingBytes {
+  #buffer = new Uint8Array(1 << 16);
+  length = 0;
+  append(bytes) {
+    if (this.length + bytes.length > this.#buffer.length) {
+      const larger = new Uint8Array(Math.max(2 * this.#buffer.length, this.length + bytes.length));
+      larger.set(this.bytes);
+      this.#buffer = larger;
+    }
+    this.#buffer.set(bytes, this.length);
+    this.length += bytes.length;
+  }
+  get bytes() { return this.#buffer.subarray(0, this.length); }
 }
 
 /** A GLB of this JSON and the front of its first buffer. */

@@ -6,7 +6,7 @@ import {Surface} from './surface.js';
 const kDefaults = {pixelError: 1, maxTriangles: Infinity, maxLevel: Infinity};
 
 /**
- * Events: 'level' {surface, level, error}, 'progress' {received, total}, 'complete', 'problem' {message}: one for each thing that went wrong; what
+ * Events: 'level' {surface, level, error}, 'progress' {received, total}, 'complete', 'textures' (they came after the surfaces), 'problem' {message}: one for each thing that went wrong; what
  * was shown stays.
  */
 export class ProgressiveModel extends EventTarget {
@@ -21,6 +21,7 @@ export class ProgressiveModel extends EventTarget {
   #view;              // of update(): {camera, height}; without, every surface gets its finest level
   #source;
   #running;
+  #isRead = false;    // all that the source gives
 
   constructor(progressive, options = {}) {
     super();
@@ -64,18 +65,24 @@ export class ProgressiveModel extends EventTarget {
     return this.resume();
   }
   resume() {
-    if (this.#running || this.#feed.isWhole || !this.#source) return this.#running ?? Promise.resolve();
+    if (this.#running || this.#isRead || !this.#source) return this.#running ?? Promise.resolve();
     if (this.signal.aborted) this.#abort = new AbortController();
     const {signal} = this;
     return this.#running = this.#source(this, signal).then(() => {
       const {available} = this.#progressive;
       if (this.received < available) throw new Error(`the file ends early: ${this.received} of ${available} bytes of the surfaces are there; the last good level stays`);
+      this.#isRead = !signal.aborted;
     }).catch(error => {
       if (!signal.aborted) this.#problem(error.message);
     }).finally(() => { this.#running = undefined; });
   }
   /** Ends the download; what is there stays, and resume() goes on. */
   abort() { this.#abort.abort(new Error('aborted')); }
+
+  /** Textures that were not there when the surfaces were: a promise that they are on their materials. */
+  addTextures(done) {
+    return done.then(() => this.#emit('textures', {}), error => this.#problem(`textures cannot be shown (${error.message})`));
+  }
 
   /** Call it before each frame, or when the camera moved: chooses the levels that the view is worth. height: pixels of the viewport. */
   update(camera, height) {

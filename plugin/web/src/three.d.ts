@@ -29,7 +29,8 @@ export interface Surface {
   readonly objects: object[];
 }
 
-/** Events: 'level' {surface, level, error, triangles}, 'progress' {received, total}, 'complete', 'problem' {message}; each in `detail`. */
+/** Events: 'level' {surface, level, error, triangles}, 'progress' {received, total}, 'complete', 'textures' (on the materials,
+ * where they came after the surfaces), 'problem' {message}; each in `detail`. */
 export class ProgressiveModel extends EventTarget {
   readonly surfaces: Surface[];
   pixelError: number;

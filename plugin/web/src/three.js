@@ -5,8 +5,9 @@
 // or, to show the base before the file has arrived, LacertaLoader.
 import {nameInThree} from './arrays.js';
 import {extensionName, parseProgressive, progressivePrimitive} from './asset.js';
-import {formatGlb, neededRanges, readHead} from './glb.js';
+import {GrowingBytes, formatGlb, imageRanges, joined, neededRanges, readHead} from './glb.js';
 import {createPool} from './inline.js';
+import {putTextures, takeTextures} from './late_textures.js';
 import {ProgressiveModel} from './progressive_model.js';
 import {transfer} from './transfer.js';
 
@@ -21,8 +22,12 @@ export class LacertaExtension {
   #options;
   #progressive;
   #problem;
+  #materials;  // with their textures, while these are not there
 
-  /** options: {three: the module, dracoLoader (for assets without fallback), pool, workers, pixelError, maxTriangles, source, onModel} */
+  /**
+   * options: {three: the module, dracoLoader (for assets without fallback), pool, workers, pixelError, maxTriangles, source, onModel,
+   * images: a promise of the first buffer, where its images are not there yet}
+   */
   constructor(parser, options) {
     this.#parser = parser;
     this.#options = options;
@@ -36,6 +41,7 @@ export class LacertaExtension {
   beforeRoot() {
     // Accessors without data describe the finest level; nobody needs its zeros.
     const {json} = this.#parser;
+    if (this.#options.images) this.#materials = takeTextures(json);
     for (const mesh of json.meshes ?? []) {
       for (const primitive of mesh.primitives) {
         if (primitive.extensions?.[extensionName] === undefined || hasData(json, primitive)) continue;
@@ -55,6 +61,7 @@ export class LacertaExtension {
     this.#options.onModel?.(model);
     const descriptions = this.#collect(gltf);
     await model.begin(await poolOf(this.#options), descriptions, this.#options.three, this.#options);
+    this.#options.images?.then(body => model.addTextures(putTextures(gltf, this.#materials, body)));
     const reading = model.read(this.#options.source ?? (target => this.#readParsed(target)));
     // Objects without a fallback have nothing to show before.
     const hidden = model.surfaces.filter((surface, i) => descriptions[i].groups.some(group => group.objects.length > 0 && !group.hasFallback));
@@ -149,19 +156,24 @@ export class LacertaLoader {
 
   async #loadStream(url, options) {
     const body = new GrowingBytes();
-    let head, needed = Infinity, dataAt = 0, model, started, resolveStarted;
+    let head, needed = Infinity, dataAt = 0, end = 0, model, started, resolveStarted, resolveImages;
     const isStarted = new Promise(resolve => { resolveStarted = resolve; });
+    const images = new Promise(resolve => { resolveImages = resolve; });
     const stop = new AbortController();
     options.signal?.addEventListener('abort', () => { stop.abort(options.signal.reason); model?.abort(); });
+    const giveImages = () => { if (end > needed && body.length >= end) resolveImages(body.bytes.slice(head.binOffset).buffer); };
     const onBytes = (offset, bytes) => {
-      if (model) return model.push(offset - dataAt, bytes);
+      model?.push(offset - dataAt, bytes);
+      if (model && body.length >= end) return;
       body.append(bytes);
+      if (model) giveImages();
       head ??= readHead(body.bytes);
       if (!head || started) return;
       const progressive = safely(() => parseProgressive(head.json));
       if (!progressive || head.json.bufferViews[progressive.data].buffer !== 0) return;  // loaded as a whole
       dataAt = head.binOffset + (head.json.bufferViews[progressive.data].byteOffset ?? 0);
       needed = head.binOffset + Math.max(...neededRanges(head.json, progressive).map(range => range.end));
+      end = head.binOffset + Math.max(0, ...imageRanges(head.json).map(range => range.end));
       if (body.length >= needed) resolveStarted(started = true);
     };
     const read = transfer(url, onBytes, {...options, signal: stop.signal});
@@ -169,15 +181,18 @@ export class LacertaLoader {
     if (!started && (head === undefined || needed < Infinity)) throw new Error(`${url}: the file ends early, after ${body.length} bytes, with nothing to show`);
     if (!started) return this.#parse(body.bytes.slice().buffer, url);
     const source = async (target, signal) => {
-      if (!model) {
+      if (model) {
+        await transfer(url, onBytes, {...options, begin: body.length < end ? body.length : dataAt + firstGap(target), signal});
+      } else {
         model = target;
         model.push(0, body.bytes.subarray(dataAt));
+        giveImages();
         signal.addEventListener('abort', () => stop.abort(signal.reason), {once: true});
-        return read;
+        await read;
       }
-      return transfer(url, (offset, bytes) => target.push(offset - dataAt, bytes), {...options, begin: dataAt + firstGap(target), signal});
+      if (body.length < end && target.feed.isWhole) throw new Error(missingTextures);
     };
-    return this.#parse(formatGlb(head.json, body.bytes.slice(head.binOffset, needed)), url, {source});
+    return this.#parse(formatGlb(head.json, body.bytes.slice(head.binOffset, needed)), url, {source, images: end > needed ? images : undefined});
   }
 
   async #loadRanges(url, options) {
@@ -204,51 +219,41 @@ export class LacertaLoader {
     }
     const view = head.json.bufferViews[progressive.data], dataAt = binOffset + (view.byteOffset ?? 0);
     const bases = progressive.order.filter(segment => segment.part === 0).reduce((end, base) => Math.max(end, base.offset + base.length), 0);
+    const late = joined(imageRanges(head.json));
+    let resolveImages, isLate = late.length > 0;
+    const images = new Promise(resolve => { resolveImages = resolve; });
+    const readImages = async signal => {
+      const whole = new Uint8Array(Math.max(front.length, late.at(-1).end));
+      whole.set(front);
+      for (const {begin, end} of late) {
+        const got = await get(binOffset + begin, binOffset + end, (offset, bytes) => whole.set(bytes, offset - binOffset), signal);
+        if (got < end - begin) throw new Error(missingTextures);
+      }
+      isLate = false;
+      resolveImages(whole.buffer);
+    };
     const source = async (model, signal) => {
       model.push(0, front.subarray(dataAt - binOffset, dataAt - binOffset + bases));
       model.push(0, body.bytes.subarray(dataAt));
       for (let next; !signal.aborted && !model.feed.isWhole; ) {
         next = model.nextSegment();
+        if (!next && isLate) await readImages(signal);
         if (!next) {  // nothing is worth it until the view changes
           await new Promise(resolve => setTimeout(resolve, 100));
           continue;
         }
         const begin = dataAt + next.offset + model.feed.received(next);
         const got = await get(begin, dataAt + next.offset + next.length, (offset, bytes) => model.push(offset - dataAt, bytes), signal);
-        if (got === 0 && next.length > 0) return;  // the file was trimmed
+        if (got === 0 && next.length > 0) break;  // the file was trimmed
       }
+      if (isLate && !signal.aborted) await readImages(signal);
     };
-    return this.#parse(formatGlb(head.json, front), url, {source});
+    return this.#parse(formatGlb(head.json, front), url, {source, images: isLate ? images : undefined});
   }
 }
 
-class GrowingBytes {
-  #buffer = new Uint8Array(1 << 16);
-  length = 0;
-  append(bytes) {
-    if (this.length + bytes.length > this.#buffer.length) {
-      const larger = new Uint8Array(Math.max(2 * this.#buffer.length, this.length + bytes.length));
-      larger.set(this.bytes);
-      this.#buffer = larger;
-    }
-    this.#buffer.set(bytes, this.length);
-    this.length += bytes.length;
-  }
-  get bytes() { return this.#buffer.subarray(0, this.length); }
-}
-
+const missingTextures = 'the file ends early: its textures are missing';
 const safely = call => { try { return call(); } catch { return undefined; } };
-
-// Ranges in order, those that touch or lie close as one.
-function joined(ranges) {
-  const result = [];
-  for (const range of [...ranges].sort((a, b) => a.begin - b.begin)) {
-    const last = result.at(-1);
-    if (last && range.begin <= last.end + 4096) last.end = Math.max(last.end, range.end);
-    else result.push({...range});
-  }
-  return result;
-}
 
 // Where the first segment that is not whole goes on.
 function firstGap(model) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <ostream>
 #include <set>
+#include <utility>
 
 #include "decoder/smooth_normals.h"
 #include "document/gltf_document.h"
@@ -253,6 +254,39 @@ TEST(Pack, ImagesAnimationsAndMorphTargetsStayByteForByte) {
   }
   const Span<const uint8_t> kept = BufferViewBytes(after, after.json["images"][0]["bufferView"]).value();
   EXPECT_EQ(Bytes(kept.begin(), kept.end()), image);
+}
+
+TEST(Pack, AllThatSurfacesNeedComesBeforeTheirStreamsAndImagesLast) {
+  AssetBuilder builder;
+  builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(13, 22))}));
+  GltfDocument& document = builder.document();
+  const Bytes image(1000, 7);
+  const uint64_t image_view = AddBufferView(AddBuffer(image, &document), 0, image.size(), &document);
+  document.json["images"] = Json::array({{{"mimeType", "image/png"}, {"bufferView", image_view}}});
+  builder.AddFloats(WavySphere(3, 3).positions, true);  // of an animation, say
+  const auto packed = PackGltf(builder.Glb(), Options(Fallback::kDraco));
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  const GltfDocument after = ParseGltf(packed.value().glb, "").value();
+  const StatusOr<Progressive> progressive = ParseProgressive(after);
+  ASSERT_TRUE(progressive.ok()) << progressive.status().message();
+  const auto range_of = [&](const Json& view) {
+    const auto begin = view["byteOffset"].get<uint64_t>();
+    return std::make_pair(begin, begin + view["byteLength"].get<uint64_t>());
+  };
+  const Json& views = after.json["bufferViews"];
+  const auto [data_begin, data_end] = range_of(views[static_cast<size_t>(progressive.value().data)]);
+  const auto kept_image = after.json["images"][0]["bufferView"].get<size_t>();
+  size_t before = 0;
+  for (size_t view = 0; view < views.size(); ++view) {
+    const auto [begin, end] = range_of(views[view]);
+    if (view == kept_image) {
+      EXPECT_GE(begin, data_end);
+    } else if (begin != data_begin) {  // where the base begins, too
+      EXPECT_LE(end, data_begin);
+      ++before;
+    }
+  }
+  EXPECT_GE(before, 1u);
 }
 
 TEST(Pack, SharedAccessorsAndInstances) {

@@ -1,10 +1,14 @@
 // Chromium, and a server of the viewer with assets packed for the tests.
+import {randomBytes} from 'node:crypto';
 import {existsSync, mkdirSync} from 'node:fs';
 import {join} from 'node:path';
+import {deflateSync} from 'node:zlib';
+import {NodeIO} from '@gltf-transform/core';
+import {ALL_EXTENSIONS} from '@gltf-transform/extensions';
 import {chromium} from 'playwright-core';
 import {serve, viewerRoots} from '../../../../samples/viewer/serve.mjs';
 import {writeDracoTwin} from '../node/draco_twin.mjs';
-import {dataFolder, pack, root, scratch, writeTorus} from '../node/support.mjs';
+import {dataFolder, example, lacerta, pack, root, scratch, writeTorus} from '../node/support.mjs';
 
 export const pictures = join(root, 'out/browser');
 mkdirSync(pictures, {recursive: true});
@@ -12,14 +16,26 @@ mkdirSync(pictures, {recursive: true});
 const flags = ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
   '--disable-background-networking', '--disable-component-update', '--disable-sync', '--js-flags=--expose-gc'];
 
-/** A scan, or where there is none a bumpy torus, packed at `psnr` dB, and its Draco twin. */
-export async function scanAsset(psnr) {
-  const horse = join(dataFolder, 'horse.ply'), torus = join(scratch, 'torus.obj');
-  if (!existsSync(horse)) writeTorus(torus, 240, 160);
-  const name = existsSync(horse) ? 'horse' : 'torus';
-  const glb = pack(`${name}_${psnr}.glb`, name === 'horse' ? horse : torus, '--psnr', String(psnr), '--levels', 'always');
-  const twin = await writeDracoTwin(name === 'horse' ? horse : torus, glb);
+/** The scan of that name, or where there is none a bumpy torus, packed at `psnr` dB, and its Draco twin. */
+export async function scanAsset(scan, psnr) {
+  const found = existsSync(join(dataFolder, `${scan}.ply`)), name = found ? scan : 'torus', mesh = join(found ? dataFolder : scratch, found ? `${scan}.ply` : 'torus.obj');
+  if (!found && !existsSync(mesh)) writeTorus(mesh, 240, 160);
+  const glb = pack(`${name}_${psnr}.glb`, mesh, '--psnr', String(psnr), '--levels', 'always');
+  const twin = await writeDracoTwin(mesh, glb);
   return {name, glb, twin: twin.path, file: `/assets/${name}_${psnr}.glb`, twinFile: `/assets/${name}_${psnr}.draco.glb`};
+}
+
+/** A packed surface with texture coordinates and a picture of noise, which takes most of the file: {path, imageBytes}. */
+export async function texturedAsset(name) {
+  const plain = join(scratch, `plain_${name}`), io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
+  lacerta('unpack', example('torus_with_attributes.glb'), '--level', '1', '-o', plain);
+  const document = await io.read(plain), [mesh] = document.getRoot().listMeshes();
+  const pixels = randomBytes(256 * 256 * 3), image = png(256, 256, pixels);
+  const material = document.createMaterial().setBaseColorTexture(document.createTexture().setImage(image).setMimeType('image/png'));
+  mesh.listPrimitives().forEach((primitive, i) => i === 0 ? primitive.setMaterial(material) : primitive.dispose());
+  await io.write(plain, document);
+  const path = pack(name, plain, '--psnr', '55', '--levels', 'always');
+  return {path, imageBytes: image.length};
 }
 
 /** {page, base, close} with the viewer open and nothing loaded. */
@@ -48,4 +64,32 @@ export async function loadWhole(page, url, mode = 'stream') {
   await page.evaluate(([address, how]) => window.viewer.show(address, {mode: how, name: 'asset'}), [url, mode]);
   await page.waitForFunction('document.getElementById("problem").textContent !== "" || window.model?.surfaces.every(s => s.isComplete)', null, {timeout: 60000});
   return page.evaluate('window.history_of_levels');
+}
+
+// As PNG has it; zlib.crc32 is newer than Debian's Node.js.
+function crc32(bytes) {
+  let crc = ~0;
+  for (const byte of bytes) {
+    crc ^= byte;
+    for (let bit = 0; bit < 8; ++bit) crc = crc >>> 1 ^ (crc & 1 ? 0xedb88320 : 0);
+  }
+  return ~crc >>> 0;
+}
+
+// A PNG of 8-bit colors.
+function png(width, height, pixels) {
+  const rows = Buffer.alloc(height * (1 + 3 * width));
+  for (let y = 0; y < height; ++y) pixels.copy(rows, y * (1 + 3 * width) + 1, 3 * width * y, 3 * width * (y + 1));
+  const chunk = (type, data) => {
+    const body = Buffer.concat([Buffer.from(type), data]), out = Buffer.alloc(body.length + 8);
+    out.writeUInt32BE(data.length);
+    body.copy(out, 4);
+    out.writeUInt32BE(crc32(body), body.length + 4);
+    return out;
+  };
+  const head = Buffer.alloc(13);
+  head.writeUInt32BE(width);
+  head.writeUInt32BE(height, 4);
+  head.set([8, 2], 8);
+  return Buffer.concat([Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]), chunk('IHDR', head), chunk('IDAT', deflateSync(rows)), chunk('IEND', Buffer.alloc(0))]);
 }

@@ -4,12 +4,12 @@ import {copyFileSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {drawCurves} from './curves.mjs';
-import {loadWhole, openViewer, pictures, scanAsset} from './support.mjs';
+import {loadWhole, openViewer, pictures, scanAsset, texturedAsset} from './support.mjs';
 import {example, root, scratch} from '../node/support.mjs';
 
 let viewer, page, asset;
 before(async () => {
-  asset = await scanAsset(85);
+  asset = await scanAsset('horse', 85);
   viewer = await openViewer();
   page = viewer.page;
   await loadWhole(page, asset.file);  // warms the decoders up
@@ -19,7 +19,8 @@ after(() => viewer?.close());
 
 const problem = () => page.textContent('#problem');
 
-test('over 100 kB/s the base shows within half a second, and the surface sharpens long before Draco shows anything', async () => {
+test('over 100 kB/s the base shows within half a second, and 65 dB are there long before Draco shows anything', async () => {
+  const asset = await scanAsset('dragon_50k', 86);
   // A page of its own, and small: software rendering shall not be what is measured. Decoders are warm, the link is slow.
   const fresh = await openViewer({width: 160, height: 160});
   await fresh.page.evaluate(`(async () => { await window.viewer.showDraco('${asset.twinFile}'); })()`);
@@ -45,7 +46,7 @@ test('over 100 kB/s the base shows within half a second, and the surface sharpen
   await fresh.close();
   assert.ok(history[0].milliseconds < 500, `base after ${history[0].milliseconds} ms`);
   const good = levels.find(({error}) => 20 * Math.log10(diagonal / error) >= 65);
-  // A third of Draco's time is the aim, at sizes where the link and not the start of a request counts; half of it has to be there always.
+  // A third of Draco's time is the aim, and met in the recorded run (docs/results/streaming_curve.csv); half of it has to be there always.
   assert.ok(good.milliseconds < draco / 2, `65 dB after ${good.milliseconds} ms, Draco after ${draco} ms`);
 });
 
@@ -178,6 +179,27 @@ test('a download that is stopped goes on where it ended', async () => {
   assert.equal(await problem(), '');
   await page.evaluate('window.model.resume()');
   await page.waitForFunction('window.model.surfaces[0].isComplete', null, {timeout: 20000});
+});
+
+test('textures come after the surfaces, onto the same materials; a file that ends before them is told', async () => {
+  const {path, imageBytes} = await texturedAsset('textured.glb');
+  for (const mode of ['stream', 'range']) {
+    const seen = await page.evaluate(async ([url, how]) => {
+      const gltf = await window.viewer.show(url, {mode: how, name: 'textured'}), {model} = window;
+      let mesh;
+      gltf.scene.traverse(object => { if (object.isMesh) mesh = object; });
+      const {material} = mesh, before = Boolean(material.map), events = [];
+      model.addEventListener('complete', () => events.push('complete'));
+      await new Promise(resolve => model.addEventListener('textures', resolve, {once: true}));
+      return {before, events, part: model.surfaces[0].part, last: model.surfaces[0].lastPart, same: mesh.material === material, width: material.map?.image.width};
+    }, [`/assets/textured.glb?kbps=200&mode=${mode}`, mode]);
+    assert.deepEqual(seen, {before: false, events: ['complete'], part: seen.last, last: seen.last, same: true, width: 256});
+    assert.equal(await problem(), '');
+  }
+  writeFileSync(join(scratch, 'no_textures.glb'), readFileSync(path).subarray(0, -imageBytes));
+  await page.evaluate(() => window.viewer.show('/assets/no_textures.glb', {mode: 'stream', name: 'cut'}));
+  await page.waitForFunction('window.model.surfaces[0].isComplete && document.getElementById("problem").textContent !== ""');
+  assert.equal(await problem(), 'the file ends early: its textures are missing');
 });
 
 test('groups of a stream with attributes refine together, each with its own attributes, and no crack opens between them', async () => {
