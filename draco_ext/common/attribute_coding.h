@@ -15,7 +15,7 @@ namespace lacerta {
 
 // What was coded of an attribute before the level at hand.
 struct AttributeCodingState {
-  explicit AttributeCodingState(uint32_t coded_components) : models(coded_components, SetModels(kNormalPriors)), forecasts(coded_components) {}
+  explicit AttributeCodingState(uint32_t coded_components) : models(coded_components, SetModels(kNormalPriors, Companions::kAlike)), forecasts(coded_components) {}
 
   std::vector<SetModels> models;                 // of each component
   std::vector<std::vector<Forecast>> forecasts;  // of each component, #E or empty

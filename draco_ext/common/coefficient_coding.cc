@@ -60,14 +60,7 @@ std::vector<Forecast> CodedNeighbors::ForecastFiner() const {
     }
     parents[e] = {8 * sum / weight, SignOf(values_[e])};
   }
-  const uint32_t num_halves = 2 * t.num_edges();
-  std::vector<Forecast> finer(size_t{num_halves} + size_t{3} * t.num_faces());
-  for (uint32_t e = 0; e < t.num_edges(); ++e) finer[2 * e] = finer[2 * e + 1] = parents[e];
-  for (uint32_t f = 0; f < t.num_faces(); ++f) {
-    // An inner edge cuts off corner k and runs parallel to the edge opposite to it.
-    for (uint32_t k = 0; k < 3; ++k) finer[num_halves + 3 * f + k] = parents[t.face_edges[f][k]];
-  }
-  return finer;
+  return HandDown(t, parents);
 }
 
 ForecastScale::ForecastScale(float from, float to) {

@@ -28,9 +28,26 @@ struct Forecast {
 struct CodingState {
   SetModels normal{kNormalPriors}, tangential1{kTangentialPriors}, tangential2{kTangentialPriors};
   std::vector<Forecast> normal_forecasts, tangential_forecasts;  // #E each
+  std::vector<uint8_t> length_classes;  // #E, of LengthClasses for the base, handed on with normal forecasts; empty: all usual
   LevelSteps coarser_steps;
   bool normal_continues = true, tangential_continues = true;  // false: no finer level wants forecasts
 };
+
+// What edges hand on to those of the next finer level (2 #E + 3 #F): to their halves, and to the inner edges parallel to them.
+template <typename T>
+std::vector<T> HandDown(const Topology& t, const std::vector<T>& parents) {
+  std::vector<T> finer(2 * parents.size() + size_t{3} * t.num_faces());
+  auto next = finer.begin();
+  for (const T& parent : parents) {
+    *next++ = parent;
+    *next++ = parent;
+  }
+  // An inner edge cuts off corner k and runs parallel to the edge opposite to it.
+  for (const auto& edges : t.face_edges) {
+    for (const uint32_t e : edges) *next++ = parents[e];
+  }
+  return finer;
+}
 
 // The coded coefficients of one set, summed where the next edges look for them. Edges are added in order: 0, 1, ... but for
 // copies, which have none.
@@ -106,7 +123,9 @@ template <typename Coder, typename Choose>
 void CodeNormalSet(const Topology& t, float step, CodingState* state, std::vector<int32_t>* set, Coder* coder,
                    const Choose& choose) {
   const std::vector<Forecast> forecasts = std::move(state->normal_forecasts);
+  const std::vector<uint8_t> length_classes = std::move(state->length_classes);
   state->normal_forecasts.clear();
+  state->length_classes.clear();
   if (!(step > 0)) return;
   const ForecastScale scale(state->coarser_steps.normal_step, step);
   CodedNeighbors neighbors(t);
@@ -114,13 +133,15 @@ void CodeNormalSet(const Topology& t, float step, CodingState* state, std::vecto
     if (t.is_copy(e)) continue;
     const Forecast forecast = forecasts.empty() ? Forecast() : scale(forecasts[e]);
     CoefficientContext context = neighbors.ContextOf(e, forecasts.empty() ? nullptr : &forecast);
-    if (t.on_curve[e] != 0) context.companion = kCurveCompanion;
+    context.companion = (length_classes.empty() ? 0 : length_classes[e]) + (t.on_curve[e] != 0 ? kCurveCompanion : 0);
     int32_t& q = (*set)[e];
     choose(CoefficientKind::kNormal, e, state->normal, context, &q);
     q = CodeCoefficient(*coder, state->normal, context, q);
     neighbors.Add(e, q);
   }
-  if (state->normal_continues) state->normal_forecasts = neighbors.ForecastFiner();
+  if (!state->normal_continues) return;
+  state->normal_forecasts = neighbors.ForecastFiner();
+  if (!length_classes.empty()) state->length_classes = HandDown(t, length_classes);
 }
 
 // Codes the tangential set of one level after the normal one; see CodeLevel. For the neighbors an edge counts with the

@@ -30,18 +30,23 @@ inline int ActivityClass(uint32_t sixteenths) {
 // What is known about a coefficient before it is coded.
 struct CoefficientContext {
   int activity = 0;    // ActivityClass of the expected magnitude
-  int companion = 0;   // what was coded at the same edge before: 0 nothing or zeros .. 2 much; 3 more on a curve
+  int companion = 0;   // normal: LengthClass; tangential: what was coded at the same edge before, 0 nothing or zeros .. 2 much; 3 more on a curve
   int sign_class = 0;  // 0: nothing is known about the sign .. 7: neighbors and parent agree on it
   bool expect_negative = false;
 };
 
+// How the models of companions that tell no lengths begin in sets coded like normal ones: all like the first.
+enum class Companions { kApart, kAlike };
+
 // Models of one set. They live on from level to level.
 struct SetModels {
   SetModels() = default;  // that begin with even odds
-  explicit SetModels(const SetPriors& priors) {
+  explicit SetModels(const SetPriors& priors, Companions companions = Companions::kApart) {
     const auto begin = [](uint8_t probability) { return BitModel(uint32_t{probability} << 8, kPriorBits); };
     for (int a = 0; a < kNumActivityClasses; ++a) {
-      for (int c = 0; c < kNumCompanionClasses; ++c) nonzero[a][c] = begin(priors.nonzero[a][c % SetPriors::kNumCompanions]);
+      for (int c = 0; c < kNumCompanionClasses; ++c) {
+        nonzero[a][c] = begin(priors.nonzero[a][companions == Companions::kAlike ? 0 : c % SetPriors::kNumCompanions]);
+      }
       for (int m = 0; m < kUnaryLength; ++m) larger[a][m] = begin(priors.larger[a][std::min(m, SetPriors::kNumSteps - 1)]);
     }
     for (int g = 0; g < kNumSignClasses; ++g) unexpected_sign[g] = begin(priors.unexpected_sign[g]);

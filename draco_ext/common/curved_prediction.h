@@ -1,5 +1,5 @@
 // Prediction of edge midpoints on curves: the butterfly's point, moved along its normal to the height of the cubic Hermite curve
-// that leaves either end of the edge in the tangent plane there.
+// that leaves either end of the edge in the tangent plane there, and a little on for what lies around.
 //
 // On the coarse levels of a normal mesh, whose triangles are large beside the curvature of the surface, normals say more than the
 // eight points of the butterfly do. Moving along the normal keeps to the line that the remesher has pierced, so that details stay normal

@@ -16,7 +16,7 @@ namespace lacerta {
 
 // Models of what refines one set: coefficients that are zero so far, and the others.
 struct RefinementModels {
-  explicit RefinementModels(const SetPriors& priors) : zero(priors) {}
+  explicit RefinementModels(const SetPriors& priors, Companions companions = Companions::kApart) : zero(priors, companions) {}
   SetModels zero, told;
 };
 
@@ -26,7 +26,7 @@ struct LayeredLevel {
   int shift = 0;            // its steps are 2^shift times those of the header
   LevelSteps steps;         // in use now
   QuantizedLevel values;    // shapes as in QuantizedLevel
-  RefinementModels normal{kNormalPriors}, tangential1{kTangentialPriors}, tangential2{kTangentialPriors};
+  RefinementModels normal{kNormalPriors, Companions::kAlike}, tangential1{kTangentialPriors}, tangential2{kTangentialPriors};
 };
 
 struct LayerState {

@@ -10,6 +10,7 @@
 #include "common/butterfly.h"
 #include "common/coefficient_coding.h"
 #include "common/glued_base.h"
+#include "common/length_classes.h"
 #include "common/stream_layout.h"
 #include "common/subdivision.h"
 #include "decoder/attribute_decoder.h"
@@ -138,6 +139,7 @@ StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeHeader(Span<const
     layers.emplace(header->steps, std::move(topology), num_still, last_level(), options.limits);
   } else {
     stencils.emplace(topology);
+    coding.length_classes = LengthClasses(topology, base.lattice);
   }
   return std::optional<size_t>(read->size);
 }

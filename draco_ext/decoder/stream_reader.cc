@@ -12,9 +12,9 @@
 namespace lacerta {
 namespace {
 
-// Reads the steps of all levels. Returns what is wrong with them, or null: the header may still end early or have a wrong checksum,
+// Reads the steps of all levels. Returns what is wrong with them: the header may still end early or have a wrong checksum,
 // which is told first.
-const char* ReadSteps(int num_levels, ByteCursor* cursor, std::vector<LevelSteps>* steps) {
+Status ReadSteps(int num_levels, ByteCursor* cursor, std::vector<LevelSteps>* steps) {
   Bytes flags;
   for (int i = 0; i < num_levels; i += 2) {
     const uint8_t two = cursor->Byte();
@@ -47,14 +47,14 @@ const char* ReadSteps(int num_levels, ByteCursor* cursor, std::vector<LevelSteps
     steps->push_back(s);
     normal_bits = NextStepBits(normal_bits);
   }
-  if (!is_sound) return "a quantization step in the refinement header is not a positive number";
+  if (!is_sound) return InvalidData("a quantization step in the refinement header is not a positive number");
   const auto is_without_use = [](uint8_t f) { return f != 0 && (f & (kCodesNormal | kCodesTangential)) == 0; };
-  if ((num_levels % 2 == 0 || flags.back() == 0) && std::none_of(flags.begin(), flags.end(), is_without_use)) return nullptr;
-  return "a level in the refinement header has flags, but no coefficients";
+  if ((num_levels % 2 == 0 || flags.back() == 0) && std::none_of(flags.begin(), flags.end(), is_without_use)) return Status();
+  return InvalidData("a level in the refinement header has flags, but no coefficients");
 }
 
-// Reads the attributes. Returns what is wrong with them, or null, as ReadSteps does.
-const char* ReadAttributes(size_t num_levels, ByteCursor* cursor, std::vector<AttributeHeader>* attributes) {
+// Reads the attributes. Returns what is wrong with them, as ReadSteps does.
+Status ReadAttributes(size_t num_levels, ByteCursor* cursor, std::vector<AttributeHeader>* attributes) {
   const uint32_t count = cursor->Varint();
   uint64_t num_components = 0;
   for (uint32_t i = 0; i < count && !cursor->at_end(); ++i) {
@@ -64,37 +64,37 @@ const char* ReadAttributes(size_t num_levels, ByteCursor* cursor, std::vector<At
     num_components += a.precision.components;
     const Span<const uint8_t> name = cursor->Take(cursor->Byte());
     a.precision.name.assign(name.begin(), name.end());
-    if (kind > kLastAttributeKind) return "an attribute in the refinement header is of unknown kind";
+    if (kind > kLastAttributeKind) return InvalidData("an attribute in the refinement header is of unknown kind");
     a.precision.kind = static_cast<AttributeKind>(kind);
     const bool is_normal = a.precision.kind == AttributeKind::kNormal;
     if (!HasLegalComponents(a.precision) || num_components > kMostComponents)
-      return "an attribute in the refinement header has a number of components that is not legal";
+      return InvalidData("an attribute in the refinement header has a number of components that is not legal");
     if (prediction > static_cast<uint8_t>(AttributePrediction::kGeometry) ||
         (!is_normal && prediction == static_cast<uint8_t>(AttributePrediction::kGeometry)))
-      return "an attribute in the refinement header has an unknown prediction";
+      return InvalidData("an attribute in the refinement header has an unknown prediction");
     a.prediction = static_cast<AttributePrediction>(prediction);
     if (is_normal) {
       a.precision.octahedral_bits = cursor->Byte();
       if (a.precision.octahedral_bits < kLeastOctahedralBits || a.precision.octahedral_bits > kMostOctahedralBits)
-        return "the normals in the refinement header have a number of bits that is not legal";
+        return InvalidData("the normals in the refinement header have a number of bits that is not legal");
     } else {
       const uint16_t step = cursor->Word16();
-      if (!IsStepBits(step)) return "the base step of an attribute in the refinement header is not a positive number";
+      if (!IsStepBits(step)) return InvalidData("the base step of an attribute in the refinement header is not a positive number");
       a.precision.step = StepFromBits(step);
     }
     const uint32_t coded_levels = cursor->Varint();
-    if (coded_levels >> num_levels != 0) return "an attribute in the refinement header has more levels than the mesh";
+    if (coded_levels >> num_levels != 0) return InvalidData("an attribute in the refinement header has more levels than the mesh");
     a.steps.assign(num_levels, 0.0f);
     int64_t bits = kFirstAttributeStepBits;
     for (size_t level = 0; level < num_levels; ++level) {
       if ((coded_levels >> level & 1) == 0) continue;
       bits += cursor->SignedVarint();
-      if (!IsStepBits(bits)) return "a step of an attribute in the refinement header is not a positive number";
+      if (!IsStepBits(bits)) return InvalidData("a step of an attribute in the refinement header is not a positive number");
       a.steps[level] = StepFromBits(static_cast<uint16_t>(bits));
     }
     attributes->push_back(std::move(a));
   }
-  return nullptr;
+  return Status();
 }
 
 // A length, a checksum and so many bytes. what: as in SegmentChecksum; level: for messages.
@@ -144,7 +144,7 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   header.has_layers = (levels_and_flags & kHasLayers) != 0;
   const uint16_t base_step_bits = has_base_step ? cursor.Word16() : uint16_t{0};
   header.base_checksum = cursor.Word16();
-  const char* const fault_of_steps = ReadSteps(num_levels, &cursor, &header.steps);
+  const Status read_steps = ReadSteps(num_levels, &cursor, &header.steps);
   const uint32_t tags_size = has_tags ? cursor.Varint() : 0;
   if (!cursor.at_end() && (tags_size > max_tag_bytes || (has_tags && tags_size == 0))) {
     return InvalidData("the refinement header is damaged (" + std::to_string(tags_size) + " bytes of tags)");
@@ -152,9 +152,10 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   const Span<const uint8_t> tags = cursor.Take(tags_size);
   header.is_attributed = (levels_and_flags & kHasAttributes) != 0;
   if (header.is_attributed && header.has_layers) return Unsupported("a refinement with quality layers cannot have attributes");
-  const char* const fault_of_attributes =
-      header.is_attributed ? ReadAttributes(static_cast<size_t>(num_levels), &cursor, &header.attributes) : nullptr;
-  if (fault_of_attributes != nullptr && !cursor.at_end()) return InvalidData(fault_of_attributes);
+  if (header.is_attributed) {
+    const Status read_attributes = ReadAttributes(static_cast<size_t>(num_levels), &cursor, &header.attributes);
+    if (!cursor.at_end()) LACERTA_RETURN_IF_ERROR(read_attributes);
+  }
   const size_t checked_size = cursor.position();
   const uint16_t checksum = cursor.Word16();
   if (cursor.at_end()) return Result();
@@ -166,7 +167,7 @@ StatusOr<std::optional<ReadHeader>> ReadRefinementHeader(Span<const uint8_t> byt
   if (has_base_step && !IsStepBits(base_step_bits)) return InvalidData("the base step in the refinement header is not a positive number");
   header.base_step = StepFromBits(base_step_bits);
   for (int i = 0; i < num_curved; ++i) header.steps[static_cast<size_t>(i)].is_curved = true;
-  if (fault_of_steps != nullptr) return InvalidData(fault_of_steps);
+  LACERTA_RETURN_IF_ERROR(read_steps);
   return Result(ReadHeader{std::move(header), cursor.position()});
 }
 

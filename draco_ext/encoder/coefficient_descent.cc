@@ -7,6 +7,7 @@
 #include "common/base_tags.h"
 #include "common/coefficient_coding.h"
 #include "common/curved_prediction.h"
+#include "common/length_classes.h"
 #include "common/local_frame.h"
 #include "decoder/synthesis.h"
 #include "encoder/bit_cost.h"
@@ -136,6 +137,7 @@ void DescendOnce(const SurfaceTarget& target, const DescentOptions& options, Cod
   if (options.move_base) DescendBase(target, gradients[LevelAhead(target, 0)], &coded->base);
   const std::vector<Vec3f> before = std::exchange(*positions, LatticePoints(coded->base));
   CodingState state;
+  state.length_classes = LengthClasses(target.topologies[0], coded->base.lattice);
   const int last_active = LastActiveLevel(coded->steps);
   for (int level = 1; level <= last_active; ++level) {
     state.normal_continues = level < last_active && coded->steps[level].normal_step > 0;
@@ -162,6 +164,7 @@ struct SetBits {
 std::vector<SetBits> CountBits(const SurfaceTarget& target, CodedSurface coded) {
   std::vector<SetBits> bits(coded.levels.size());
   CodingState state;
+  state.length_classes = LengthClasses(target.topologies[0], coded.base.lattice);
   for (size_t i = 0; i < coded.levels.size(); ++i) {
     BitMeter meter;
     double before_tangential = -1;

@@ -9,6 +9,7 @@
 #include "common/base_tags_coding.h"
 #include "common/coefficient_coding.h"
 #include "common/crc16.h"
+#include "common/length_classes.h"
 #include "common/step_forecast.h"
 #include "common/stream_layout.h"
 #include "encoder/byte_writer.h"
@@ -276,6 +277,7 @@ StatusOr<RefinementBytes> WriteRefinement(const BaseMesh& base, Span<const Topol
   LACERTA_ASSIGN_OR_RETURN(result.bytes, CheckAndWriteHeader(base, topologies, steps, levels, tags, base_step, false, attributes));
   size_t part_begin = 0;
   CodingState state;
+  if (!levels.empty()) state.length_classes = LengthClasses(topologies[0], base.lattice);
   std::optional<AttributeWriter> writer;
   if (attributes != nullptr) writer.emplace(*attributes);
   for (size_t i = 0; i < levels.size(); ++i) {

@@ -69,7 +69,7 @@ await run('em++', [...flags, ...linking, ...await compileAll(), '-o', join(objec
 // The optimizer, which comes with Emscripten, makes small functions part of their callers: that makes decoding twice as fast. Then loops and branches are
 // made anew until nothing comes off.
 const optimize = (...options) => run('wasm-opt', [...options, '--enable-bulk-memory', '--enable-sign-ext', '--enable-nontrapping-float-to-int']);
-await optimize('-O3', '--inlining-optimizing', '--flexible-inline-max-function-size', '7', join(objects, 'lacerta.wasm'), '-o', join(objects, 'inlined.wasm'));
+await optimize('-O3', '--inlining-optimizing', '--flexible-inline-max-function-size', '6', join(objects, 'lacerta.wasm'), '-o', join(objects, 'inlined.wasm'));
 const again = ['--flatten', '--rereloop', '-Oz'];
 await optimize(...again, ...again, '-Oz', '--converge', join(objects, 'inlined.wasm'), '-o', join(dist, 'lacerta.wasm'));
 const wasm = readFileSync(join(dist, 'lacerta.wasm'));

@@ -320,17 +320,20 @@ def tagged_level(base, payload):
 
 # Initial probabilities in 1/256: nonzero[a][c mod 3], unexpected_sign[g], larger[a][min(m - 1, 3)].
 NORMAL_PRIORS = (
-    ((11, 11, 11), (9, 9, 9), (23, 23, 23), (56, 56, 56), (99, 99, 99), (145, 145, 145), (176, 176, 176),
-     (202, 202, 202), (221, 221, 221), (233, 233, 233), (241, 241, 241), (246, 246, 246), (250, 250, 250), (252, 252, 252)),
-    (132, 70, 117, 83, 39, 96, 88, 29),
-    ((139, 180, 203, 213), (28, 29, 70, 170), (24, 45, 92, 115), (32, 49, 76, 134), (47, 58, 74, 129), (72, 74, 88, 136), (109, 98, 97, 124),
-     (155, 134, 131, 138), (189, 176, 168, 164), (211, 207, 203, 194), (227, 226, 224, 216), (239, 238, 236, 233), (246, 245, 245, 243), (251, 250, 248, 248)))
+    ((2, 1, 3), (9, 1, 17), (28, 7, 46), (65, 24, 86), (106, 56, 126), (146, 98, 160), (172, 135, 185), (198, 169, 207), (217, 194, 223),
+     (231, 214, 235), (240, 229, 242), (245, 241, 249), (249, 245, 250), (251, 246, 253)),
+    (132, 91, 100, 83, 47, 76, 84, 41),
+    ((88, 123, 183, 188), (27, 33, 70, 139), (24, 57, 88, 113), (37, 56, 72, 138), (58, 67, 80, 127), (81, 84, 91, 127), (111, 110, 110, 135),
+     (146, 141, 144, 155), (179, 174, 178, 181), (203, 200, 200, 205), (221, 220, 218, 219), (233, 234, 231, 230), (243, 243, 242, 239),
+     (245, 246, 246, 246)))
 TANGENTIAL_PRIORS = (
-    ((2, 5, 16), (3, 5, 11), (8, 10, 23), (12, 17, 34), (17, 24, 46), (22, 25, 45), (27, 28, 57),
-     (29, 30, 59), (38, 33, 70), (34, 37, 70), (46, 50, 85), (67, 62, 118), (67, 62, 118), (67, 62, 118)),
+    ((3, 5, 9), (2, 6, 14), (6, 13, 23), (9, 16, 34), (12, 21, 39), (19, 22, 41), (19, 26, 50), (25, 28, 55), (31, 31, 56), (32, 33, 72),
+     (28, 35, 70), (34, 47, 101), (55, 55, 130), (63, 61, 135)),
     (128, 128, 128, 128, 128, 128, 128, 128),
-    ((138, 182, 178, 207), (90, 145, 148, 203), (88, 128, 153, 189), (101, 139, 160, 197), (112, 144, 148, 185), (134, 155, 147, 190), (161, 158, 168, 188),
-     (181, 177, 165, 177), (201, 185, 197, 188), (202, 212, 207, 205), (202, 212, 207, 205), (202, 212, 207, 205), (202, 212, 207, 205), (202, 212, 207, 205)))
+    ((178, 189, 182, 210), (120, 148, 138, 204), (116, 142, 163, 202), (126, 137, 143, 199), (157, 143, 154, 195), (170, 158, 147, 191),
+     (191, 173, 168, 183), (198, 186, 157, 190), (217, 192, 207, 192), (217, 210, 197, 207), (224, 235, 225, 219), (208, 242, 231, 223),
+     (196, 231, 237, 241), (180, 234, 232, 246)))
+USUAL_PRIORS = (tuple((row[0],) * 3 for row in NORMAL_PRIORS[0]),) + NORMAL_PRIORS[1:]
 
 
 class SetModels:
@@ -387,10 +390,20 @@ def forecasts(coarse, values, coarse_bits, fine_bits):
         t = 8 * total // weight * (128 + (coarse_bits & 127)) * 256 // (128 + (fine_bits & 127))
         u = limit((coarse_bits >> 7) - (fine_bits >> 7), -40, 24)
         parents.append((min((t << u) >> 8 if u >= 0 else t >> (8 - u), 65536), sign_of(value)))
-    fine = [parents[e // 2] for e in range(2 * len(values))]
+    return hand_down(coarse, parents)
+
+
+def hand_down(coarse, parents):
+    fine = [parents[e // 2] for e in range(2 * len(parents))]
     for edges in coarse.face_edges:
         fine += [parents[e] for e in edges]
     return fine
+
+
+def length_classes(level, lattice):
+    squares = [sum((x - y) ** 2 for x, y in zip(lattice[a], lattice[b])) for a, b, _, _ in level.edges]
+    total, count = sum(squares) % 2 ** 64, len(squares)
+    return [1 if 2 * s * count % 2 ** 64 < total else 2 if 2 * s * count % 2 ** 64 > 3 * total % 2 ** 64 else 0 for s in squares]
 
 
 def decode_set(level, parents, decode_edge):
@@ -428,12 +441,16 @@ class CoefficientDecoder:
     def __init__(self):
         self.models = [SetModels(NORMAL_PRIORS), SetModels(TANGENTIAL_PRIORS), SetModels(TANGENTIAL_PRIORS)]
         self.coarse = {}  # set -> (level tables, values, step bits)
+        self.lengths = None  # classes of the edges of the level to come, or None: all usual
 
     def decode(self, level, sets, decoder):
         normal, tangential = [0] * len(level.edges), [0] * 2 * len(level.edges)
+        lengths = self.lengths or [0] * len(level.edges)
+        self.lengths = hand_down(level, lengths) if self.lengths and sets["normal"][0] else None
 
         def normal_edge(e, activity, sign_class, expect_negative):
-            normal[e] = decode_coefficient(decoder, self.models[0], activity, 3 * level.on_curve[e], sign_class, expect_negative)
+            companion = lengths[e] + 3 * level.on_curve[e]
+            normal[e] = decode_coefficient(decoder, self.models[0], activity, companion, sign_class, expect_negative)
             return normal[e]
 
         def tangential_edge(e, activity, _sign_class, _expect_negative):
@@ -461,7 +478,7 @@ class LayeredLevel:
         self.level, self.sets = level, sets
         self.shift = None  # until its first segment
         self.normal, self.tangential = [0] * len(level.edges), [0] * 2 * len(level.edges)
-        self.zero = [SetModels(NORMAL_PRIORS), SetModels(TANGENTIAL_PRIORS), SetModels(TANGENTIAL_PRIORS)]
+        self.zero = [SetModels(USUAL_PRIORS), SetModels(TANGENTIAL_PRIORS), SetModels(TANGENTIAL_PRIORS)]
         self.told = [SetModels(NORMAL_PRIORS), SetModels(TANGENTIAL_PRIORS), SetModels(TANGENTIAL_PRIORS)]
         for models in self.told:
             even = SetModels.__new__(SetModels)
@@ -611,19 +628,25 @@ def stencil(level, e):
 
 def curve_heights(level, normals, middles, positions):
     """How far midpoints move along their normals, on a curved level."""
-    around = [[0.0, 0.0, 0.0] for _ in range(level.num_vertices)]
+    at_vertices = [[0.0, 0.0, 0.0] for _ in range(level.num_vertices)]
     for t in level.triangles:
         sides = [unit(sub(positions[t[(k + 2) % 3]], positions[t[(k + 1) % 3]])) for k in range(3)]
         for k in range(3):
-            around[t[k]] = add(around[t[k]], cross(sides[(k + 1) % 3], sides[(k + 2) % 3]))
-    around = [unit(n) for n in around]
+            at_vertices[t[k]] = add(at_vertices[t[k]], cross(sides[(k + 1) % 3], sides[(k + 2) % 3]))
+    at_vertices = [unit(n) for n in at_vertices]
     heights = []
     for e, (a, b, _, _) in enumerate(level.edges):
         side = sub(positions[b], positions[a])
-        hermite = scale(sub(scale(around[b], dot(side, around[b])), scale(around[a], dot(side, around[a]))), 1 / 8)
-        butterfly = sub(middles[e], scale(add(positions[a], positions[b]), 1 / 2))
-        is_smooth = not level.curves(a) and not level.curves(b)
-        heights.append(dot(sub(hermite, butterfly), normals[e]) if is_smooth else 0.0)
+        hermite = scale(sub(*(scale(at_vertices[v], dot(side, at_vertices[v])) for v in (b, a))), 1 / 8)
+        middle = scale(add(positions[a], positions[b]), 1 / 2)
+        if level.curves(a) or level.curves(b):
+            heights.append(0.0)
+            continue
+        opposite = [sub(positions[level.opposite(f, e)], middle) for f in level.faces(e)]
+        wings = [sub(positions[level.opposite(level.across(f, x), x)], middle)
+                 for f in level.faces(e) for x in level.face_edges[f] if x != e and not level.on_curve[x]]
+        around = add(scale(add(*opposite), 3 / 128), scale(add([0.0] * 3, *wings), -1 / 32 / max(1, len(wings))))
+        heights.append(dot(sub(add(hermite, around), sub(middles[e], middle)), normals[e]))
     return heights
 
 
@@ -1082,7 +1105,7 @@ class AttributeLevels:
             else:
                 self.values.append([x * step_value(header["precision"]) for x in numbers])
         self.num_residuals = {1: 2, 2: 3}.get(header["kind"], header["components"])
-        self.models = [SetModels(NORMAL_PRIORS) for _ in range(self.num_residuals)]
+        self.models = [SetModels(USUAL_PRIORS) for _ in range(self.num_residuals)]
         self.coarse = [None] * self.num_residuals
 
     def decode(self, number, surface, positions, decoder):
@@ -1171,6 +1194,7 @@ def decode(base, data):
             synthesize(at.level, at.sets, at.normal, at.tangential, positions)
             coefficients.append({"normal": at.normal, "tangential": at.tangential})
         return tags, coefficients, positions, attributes
+    coefficient_decoder.lengths = length_classes(level, base["lattice"])
     for number, sets in enumerate(steps, 1):
         silent = not sets["normal"][0] and not sets["tangential"][0] and not any(a.header["steps"][number - 1] for a in attributes)
         decoder = RangeDecoder(b"" if silent else read_segment(reader, number))

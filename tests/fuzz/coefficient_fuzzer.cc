@@ -1,5 +1,6 @@
 // The entropy stage: any payload decodes to legal coefficients, and those survive being encoded and decoded again.
 #include "common/coefficient_coding.h"
+#include "common/length_classes.h"
 #include "decoder/range_decoder.h"
 #include "draco_ext/encoder/test_streams.h"
 #include "encoder/range_encoder.h"
@@ -28,6 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const lacerta::BaseMesh base = (input.Byte() & 1) != 0 ? lacerta::testing::Square() : lacerta::testing::Octahedron();
   Topology t = lacerta::BuildTopology(static_cast<uint32_t>(base.lattice.size()), base.triangles).value();
   CodingState decoding, encoding, decoding_again;
+  decoding.length_classes = encoding.length_classes = decoding_again.length_classes = lacerta::LengthClasses(t, base.lattice);
   for (int level = 0; level < 3; ++level, t = lacerta::Refine(t)) {
     const float normal_step = StepOf(input.Word16());
     const LevelSteps steps = {normal_step, StepOf(input.Word16()), 0, 0};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "common/length_classes.h"
 #include "decoder/range_decoder.h"
 #include "draco_ext/encoder/test_streams.h"
 #include "encoder/range_encoder.h"
@@ -23,9 +24,10 @@ Topology TopologyOf(const BaseMesh& base) {
 }
 
 // Codes all levels and decodes them again; returns the number of payload bytes.
-size_t RoundTrip(const BaseMesh& base, const Coefficients& c) {
+size_t RoundTrip(const BaseMesh& base, const Coefficients& c, const std::vector<uint8_t>& length_classes = {}) {
   Topology t = TopologyOf(base);
   CodingState encoding, decoding;
+  encoding.length_classes = decoding.length_classes = length_classes;
   size_t bytes = 0;
   for (size_t i = 0; i < c.levels.size(); ++i, t = Refine(t)) {
     QuantizedLevel kept = c.levels[i];
@@ -106,6 +108,24 @@ TEST(CoefficientCodingTest, ContextsPayOff) {
     std::shuffle(shuffled.levels[i].normal.begin(), shuffled.levels[i].normal.end(), random);
   }
   EXPECT_LT(static_cast<double>(RoundTrip(base, ordered)), 0.9 * static_cast<double>(RoundTrip(base, shuffled)));
+}
+
+TEST(CoefficientCodingTest, LengthClassesPayOff) {
+  // One edge in three is long, and has the only coefficients, as have those that come from it.
+  const BaseMesh base = Torus(8, 6);
+  Topology t = TopologyOf(base);
+  std::vector<uint8_t> classes(t.num_edges()), handed;
+  for (uint32_t e = 0; e < t.num_edges(); e += 3) classes[e] = kLongLength;
+  Coefficients c = RandomCoefficients(base, 3, 4, 1.0);
+  handed = classes;
+  for (QuantizedLevel& level : c.levels) {
+    level.tangential.assign(level.tangential.size(), 0);
+    for (uint32_t e = 0; e < t.num_edges(); ++e) level.normal[e] = handed[e] == kLongLength ? level.normal[e] : 0;
+    handed = HandDown(t, handed);
+    t = Refine(t);
+  }
+  EXPECT_LT(static_cast<double>(RoundTrip(base, c, classes)), 0.8 * static_cast<double>(RoundTrip(base, c)));
+  EXPECT_GT(RoundTrip(base, c, classes), 0u);
 }
 
 TEST(CoefficientModelsTest, ActivityClassesGrowWithTheExpectedMagnitude) {
