@@ -65,7 +65,7 @@ StatusOr<Asset> Read(const std::string& path) {
 // What the errors of a family are held against.
 struct Judge {
   std::vector<size_t> members;
-  double scale = 0.0;  // of the PSNR: the scene's diagonal in mesh units
+  double scale = 0.0;  // of the PSNR: what has the error of the target at that PSNR; for most the scene's diagonal, mesh units
   TexelScale texels;
   AttributedMesh original;
   SurfaceErrorMeter meter;
@@ -78,7 +78,8 @@ StatusOr<AttributedMesh> Join(const std::vector<Primitive>& primitives, const st
   return ToAttributedMesh(own, texels, OtherAttributes::kLeaveOut);
 }
 
-StatusOr<std::vector<Judge>> MakeJudges(const Asset& original) {
+// psnr: of the target; surfaces small in their scene may not be as far off as the scene's diagonal would let them.
+StatusOr<std::vector<Judge>> MakeJudges(const Asset& original, double psnr) {
   const uint64_t side = TexelSide(original.document);
   std::vector<std::vector<Place>> places;
   for (const Place& place : original.places) places.push_back({place});
@@ -99,7 +100,7 @@ StatusOr<std::vector<Judge>> MakeJudges(const Asset& original) {
     LACERTA_ASSIGN_OR_RETURN(AttributedMesh mesh, Join(original.primitives, members, texels));
     StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(mesh, static_cast<double>(side));
     if (!meter.ok()) continue;  // nothing to see
-    const double scale = FamilyError(families, f, 60.0) * 1000.0;
+    const double scale = FamilyError(families, f, psnr) * std::pow(10.0, psnr / 20.0);
     AttributeTargets one;
     one.uv_texels = 1.0;
     one.normal_degrees = 1.0;
@@ -245,7 +246,7 @@ Status Report(const std::vector<std::string>& files, const Errors& wanted) {
   LACERTA_ASSIGN_OR_RETURN(const Asset original, Read(files[0]));
   LACERTA_ASSIGN_OR_RETURN(const Bytes packed, ReadFile(files[1]));
   LACERTA_ASSIGN_OR_RETURN(const Asset unpacked, Read(files[2]));
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<Judge> judges, MakeJudges(original));
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<Judge> judges, MakeJudges(original, wanted.psnr));
   LACERTA_ASSIGN_OR_RETURN(const Errors ours, MeasureAll(judges, unpacked.primitives, kSamples));
   LACERTA_ASSIGN_OR_RETURN(const FlattenResult before, FlattenGltf(ReadFile(files[0]).value(), {}));
   LACERTA_ASSIGN_OR_RETURN(const FlattenResult after, FlattenGltf(ReadFile(files[2]).value(), {}));
