@@ -6,6 +6,7 @@
 #include <draco/mesh/mesh.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -87,7 +88,7 @@ std::vector<Group> SplitGroups(const AttributedBase& base) {
 
 class GroupEncoder {
  public:
-  GroupEncoder(const AttributedBase& base, const Group& group) : base_(base), group_(group) {}
+  GroupEncoder(const AttributedBase& base, const Group& group, const JointTable& joints) : base_(base), group_(group), joints_(joints) {}
 
   StatusOr<Bytes> Encode(size_t group) {
     mesh_.set_num_points(group_.num_vertices);
@@ -106,6 +107,8 @@ class GroupEncoder {
       const int32_t* const values = a.values.data() + size_t{group_.first_vertex} * a.numbers_per_value();
       if (a.precision.octahedral_bits > 0) {
         AddNormals(unique_id, a.precision.octahedral_bits, values);
+      } else if (a.precision.kind == AttributeKind::kWeights && !joints_.empty()) {
+        LACERTA_RETURN_IF_ERROR(AddWeights(unique_id, a.precision.step, values).WithContext("attribute " + a.precision.name));
       } else {
         LACERTA_RETURN_IF_ERROR(AddLattice(DracoType(a.precision), unique_id, a.precision.step, values, a.precision.components)
                                     .WithContext("attribute " + a.precision.name));
@@ -168,6 +171,32 @@ class GroupEncoder {
     octahedral_.emplace_back(AddFloats(draco::GeometryAttribute::NORMAL, unique_id, values, 3), bits);
   }
 
+  Status AddWeights(uint32_t unique_id, float step, const int32_t* points) {
+    std::vector<int32_t> weights;
+    std::vector<uint16_t> joints;
+    for (uint32_t v = 0; v < group_.num_vertices; ++v) {
+      const std::vector<float> row(points + v * joints_.size(), points + (v + 1) * joints_.size());
+      const FourWeights four = LargestFour(row.data(), joints_);
+      for (size_t i = 0; i < four.weights.size(); ++i) {
+        weights.push_back(static_cast<int32_t>(std::lround(four.weights[i] / step)));
+        joints.push_back(four.joints[i]);
+      }
+    }
+    constexpr int8_t kKept = 4;
+    const bool is_short = *std::max_element(joints_.begin(), joints_.end()) > std::numeric_limits<uint8_t>::max();
+    draco::GeometryAttribute description;
+    description.Init(draco::GeometryAttribute::GENERIC, nullptr, kKept, is_short ? draco::DT_UINT16 : draco::DT_UINT8, false, is_short ? 2 * kKept : kKept, 0);
+    draco::PointAttribute* const to = mesh_.attribute(mesh_.AddAttribute(description, /*identity_mapping=*/true, group_.num_vertices));
+    to->set_unique_id(static_cast<uint32_t>(base_.attributes.size() + 1));
+    if (is_short) {
+      to->buffer()->Write(0, joints.data(), joints.size() * sizeof(joints[0]));
+    } else {
+      const Bytes narrow(joints.begin(), joints.end());
+      to->buffer()->Write(0, narrow.data(), narrow.size());
+    }
+    return AddLattice(draco::GeometryAttribute::GENERIC, unique_id, step, weights.data(), kKept);
+  }
+
   StatusOr<Bytes> EncodeBy(int method) const {
     draco::ExpertEncoder encoder(mesh_);
     encoder.SetSpeedOptions(0, 0);
@@ -184,6 +213,7 @@ class GroupEncoder {
 
   const AttributedBase& base_;
   const Group group_;
+  const JointTable& joints_;
   draco::Mesh mesh_;
   std::vector<MarkedLattice> lattices_;
   std::vector<std::pair<int, int>> octahedral_;  // Draco attribute, bits
@@ -191,13 +221,14 @@ class GroupEncoder {
 
 StatusOr<VertexSoup::Attribute> ReadAttribute(const draco::Mesh& mesh, const draco::PointAttribute& from, const std::string& name) {
   const auto n = static_cast<uint32_t>(from.num_components());
-  if (n == 0 || from.data_type() != draco::DT_FLOAT32 || from.byte_stride() < static_cast<int64_t>(n * sizeof(float)))
+  const bool is_joints = name == kJointsName && (from.data_type() == draco::DT_UINT8 || from.data_type() == draco::DT_UINT16);
+  if (n == 0 || (from.data_type() != draco::DT_FLOAT32 && !is_joints) || from.byte_stride() < int64_t{n} * draco::DataTypeLength(from.data_type()))
     return InvalidData("attribute " + name + " of the base is not of floats");
   VertexSoup::Attribute result{name, AttributeKind::kGeneric, n, std::vector<float>(size_t{n} * mesh.num_points())};
   for (uint32_t v = 0; v < mesh.num_points(); ++v) {
     const draco::AttributeValueIndex index = from.mapped_index(draco::PointIndex(v));
     if (index.value() >= from.size()) return InvalidData("a value of attribute " + name + " is missing in the base");
-    std::memcpy(&result.values[size_t{n} * v], from.GetAddress(index), n * sizeof(float));
+    if (!from.ConvertValue<float>(index, static_cast<int8_t>(n), &result.values[size_t{n} * v])) return InvalidData("attribute " + name + " of the base cannot be read");
   }
   return result;
 }
@@ -249,7 +280,7 @@ StatusOr<std::vector<FaceSource>> MatchFaces(const AttributedBase& given, const 
 
 }  // namespace
 
-StatusOr<CodedAttributedBase> EncodeAttributedBase(const AttributedBase& base) {
+StatusOr<CodedAttributedBase> EncodeAttributedBase(const AttributedBase& base, const JointTable& joints) {
   CodedAttributedBase result;
   std::vector<AttributeLattice> precision;
   for (const BaseAttribute& a : base.attributes) precision.push_back(a.precision);
@@ -258,9 +289,9 @@ StatusOr<CodedAttributedBase> EncodeAttributedBase(const AttributedBase& base) {
   for (size_t g = 0; g < groups.size(); ++g) {
     const std::string where = "group " + std::to_string(g) + " of the base";
     if (groups[g].num_faces == 0) return InvalidData(where + " is empty");
-    StatusOr<Bytes> stream = GroupEncoder(base, groups[g]).Encode(g);
+    StatusOr<Bytes> stream = GroupEncoder(base, groups[g], joints).Encode(g);
     if (!stream.ok()) return stream.status().WithContext(where);
-    StatusOr<VertexSoup> soup = DecodeAttributedGroup(stream.value(), precision, kNoDecodeLimits);
+    StatusOr<VertexSoup> soup = DecodeAttributedGroup(stream.value(), precision, kNoDecodeLimits, joints);
     if (!soup.ok()) return soup.status().WithContext(where);
     soups.push_back(std::move(soup).value());
     result.streams.push_back(std::move(stream).value());
@@ -270,26 +301,29 @@ StatusOr<CodedAttributedBase> EncodeAttributedBase(const AttributedBase& base) {
   return result;
 }
 
-StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<std::string>& names, const DecodeLimits& limits) {
+StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<std::string>& names, const DecodeLimits& limits,
+                                           const JointTable& joints) {
   LACERTA_ASSIGN_OR_RETURN(const StockMesh stock, DecodeStockStream(stream, limits));
   LACERTA_ASSIGN_OR_RETURN(TriangleMesh mesh, FromDracoMesh(*stock.mesh));
   VertexSoup soup{std::move(mesh.positions), std::move(mesh.triangles), {}};
-  for (size_t i = 0; i < names.size(); ++i) {
+  for (size_t i = 0; i < names.size() + (joints.empty() ? 0 : 1); ++i) {
     const draco::PointAttribute* const from = stock.mesh->GetAttributeByUniqueId(static_cast<uint32_t>(i + 1));
     if (from == nullptr) continue;
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute attribute, ReadAttribute(*stock.mesh, *from, names[i]));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute attribute, ReadAttribute(*stock.mesh, *from, i < names.size() ? names[i] : kJointsName));
     soup.attributes.push_back(std::move(attribute));
   }
+  if (!joints.empty()) LACERTA_RETURN_IF_ERROR(SpreadWeights(joints, &soup));
   return soup;
 }
 
-StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributeLattice>& precision, const DecodeLimits& limits) {
+StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributeLattice>& precision, const DecodeLimits& limits,
+                                           const JointTable& joints) {
   std::vector<std::string> names;
   for (const AttributeLattice& p : precision) names.push_back(p.name);
-  LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, DecodeAttributedGroup(stream, names, limits));
+  LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, DecodeAttributedGroup(stream, names, limits, joints));
   for (VertexSoup::Attribute& attribute : soup.attributes) {
     const auto of = std::find_if(precision.begin(), precision.end(), [&](const AttributeLattice& p) { return p.name == attribute.name; });
-    if (of->components != attribute.components)
+    if (of == precision.end() || of->components != attribute.components)
       return InvalidData("attribute " + attribute.name + " of the base is not of " + std::to_string(of->components) + " floats");
     attribute.kind = of->kind;
   }

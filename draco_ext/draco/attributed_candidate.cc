@@ -12,6 +12,12 @@ constexpr uint64_t kRoughSamples = 20'000;
 
 }  // namespace
 
+StatusOr<SurfaceErrors> AttributedSurface::Measure(const AttributedMesh& mesh, uint64_t num_samples) const {
+  LACERTA_ASSIGN_OR_RETURN(SurfaceErrors errors, meter.Measure(mesh, num_samples));
+  if (correct) LACERTA_RETURN_IF_ERROR(correct(mesh, num_samples, &errors));
+  return errors;
+}
+
 StatusOr<AttributedCandidate> AttributedCandidate::Create(const AttributedSurface& input, uint32_t num_base_vertices, int num_levels) {
   AttributedRemeshOptions options;
   options.num_base_vertices = num_base_vertices;
@@ -19,7 +25,7 @@ StatusOr<AttributedCandidate> AttributedCandidate::Create(const AttributedSurfac
   LACERTA_ASSIGN_OR_RETURN(AttributedNormalMesh mesh, RemeshAttributed(input.parts, input.surface, input.history, options));
   AttributedSemiRegularMesh levels = mesh.Semiregular();
   FitLevelAttributes(input.original, &levels);
-  LACERTA_ASSIGN_OR_RETURN(SurfaceErrors errors, input.meter.Measure(FinestLevel(levels), kRoughSamples));
+  LACERTA_ASSIGN_OR_RETURN(SurfaceErrors errors, input.Measure(FinestLevel(levels), kRoughSamples));
   mesh.attributes = std::move(levels.attributes);
   return AttributedCandidate(input, std::move(mesh), std::move(errors));
 }

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -17,6 +18,9 @@
 
 namespace lacerta {
 
+// Sets errors of a surface that show elsewhere than in what was measured, as weights of joints do; empty: there are none.
+using ErrorCorrection = std::function<Status(const AttributedMesh&, uint64_t num_samples, SurfaceErrors*)>;
+
 // A surface with attributes, prepared once for all candidates. References must outlive the candidates.
 struct AttributedSurface {
   const GroupSurface& original;
@@ -24,6 +28,10 @@ struct AttributedSurface {
   const AttributedParts& parts;
   const InputSurface& surface;     // of parts.refined.surface
   const CollapseHistory& history;  // of the same
+  JointTable joints = {};          // as in AttributedStreamOptions
+  ErrorCorrection correct = {};
+
+  StatusOr<SurfaceErrors> Measure(const AttributedMesh& mesh, uint64_t num_samples) const;
 };
 
 struct AttributedTrial {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -27,7 +28,7 @@ namespace {
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
 // Of the base, for an error over the surface: base values are few, and what they are off spreads over many finer ones.
-AttributeLattice PrecisionFor(const LevelAttribute& a, double error) {
+AttributeLattice PrecisionFor(const LevelAttribute& a, double error, bool is_four) {
   AttributeLattice p{a.name, a.kind, a.components, 0.0f, 0};
   if (a.kind == AttributeKind::kNormal) {
     constexpr double kDegreesOfOneBit = 92.0;
@@ -39,6 +40,11 @@ AttributeLattice PrecisionFor(const LevelAttribute& a, double error) {
   constexpr double kStepOverError = 1.5;
   constexpr float kMostLatticePoint = 65535.0f;  // times a step of 8 bits it is exact in float
   const double unit = a.kind == AttributeKind::kTangent ? error / kDegreesPerRadian : error;
+  if (a.kind == AttributeKind::kWeights && is_four) {
+    constexpr int kFewestBits = 3, kMostBits = 14;  // a power of two: 1 is on the lattice
+    p.step = static_cast<float>(std::exp2(-std::clamp(static_cast<int>(std::ceil(-std::log2(kStepOverError * unit))), kFewestBits, kMostBits)));
+    return p;
+  }
   p.step = ShortStep(std::max({static_cast<float>(kStepOverError * unit), 1.01f * largest / kMostLatticePoint, 1e-30f}));
   return p;
 }
@@ -55,6 +61,8 @@ Status CheckShapes(const AttributedNormalMesh& mesh, const AttributedStreamOptio
       return InvalidArgument("attribute " + a.name + " has not the shape that its base tells");
     if (!std::all_of(a.values.begin(), a.values.end(), [](float x) { return std::isfinite(x); }))
       return InvalidArgument("attribute " + a.name + " has values that are not finite");
+    if (a.kind == AttributeKind::kWeights && !options.joints.empty() && options.joints.size() != a.components)
+      return InvalidArgument("joints and components of attribute " + a.name + " are not as many");
     for (const Triangle& corners : a.base_corners) {
       const bool any = std::any_of(corners.begin(), corners.end(), [](uint32_t r) { return r == MeshAttribute::kNoValue; });
       const bool all = std::all_of(corners.begin(), corners.end(), [](uint32_t r) { return r == MeshAttribute::kNoValue; });
@@ -65,7 +73,31 @@ Status CheckShapes(const AttributedNormalMesh& mesh, const AttributedStreamOptio
   return Status();
 }
 
-void AppendIntegers(const AttributeLattice& p, const float* row, std::vector<int32_t>* values) {
+// The four largest, on the lattice with the sum 1: what is missing goes to those that rounding took most from.
+std::vector<int32_t> RoundWeights(const AttributeLattice& p, const float* row) {
+  JointTable components(p.components);
+  std::iota(components.begin(), components.end(), uint16_t{0});
+  const FourWeights four = LargestFour(row, components);
+  std::array<int32_t, 4> points;
+  auto left = static_cast<int32_t>(std::lround(1 / p.step));
+  for (size_t i = 0; i < points.size(); ++i) left -= points[i] = static_cast<int32_t>(four.weights[i] / p.step);
+  const auto lost = [&](size_t i) { return four.weights[i] / p.step - static_cast<float>(points[i]); };
+  for (; left > 0; --left) {
+    size_t most = 0;
+    for (size_t i = 1; i < points.size(); ++i) most = lost(i) > lost(most) ? i : most;
+    ++points[most];
+  }
+  std::vector<int32_t> values(p.components, 0);
+  for (size_t i = 0; i < points.size(); ++i) values[four.joints[i]] += points[i];
+  return values;
+}
+
+void AppendIntegers(const AttributeLattice& p, const float* row, bool is_four, std::vector<int32_t>* values) {
+  if (p.kind == AttributeKind::kWeights && is_four) {
+    const std::vector<int32_t> points = RoundWeights(p, row);
+    values->insert(values->end(), points.begin(), points.end());
+    return;
+  }
   if (p.octahedral_bits > 0) {
     const auto point = OctahedralFromNormal({row[0], row[1], row[2]}, p.octahedral_bits);
     values->insert(values->end(), point.begin(), point.end());
@@ -99,7 +131,7 @@ StatusOr<AttributedBase> BaseOf(const AttributedNormalMesh& mesh, const Attribut
   AttributedBase base;
   base.mesh.step = lattice.step;
   base.group_sizes.assign(num_groups, 0);
-  for (size_t i = 0; i < mesh.attributes.size(); ++i) base.attributes.push_back({PrecisionFor(mesh.attributes[i], options.errors[i]), {}, std::vector<uint8_t>(num_groups, 0)});
+  for (size_t i = 0; i < mesh.attributes.size(); ++i) base.attributes.push_back({PrecisionFor(mesh.attributes[i], options.errors[i], !options.joints.empty()), {}, std::vector<uint8_t>(num_groups, 0)});
   for (uint32_t f = 0; f < surface.base_triangles.size(); ++f) order->push_back(f);
   const auto group_of = [&](uint32_t f) { return mesh.base_groups.empty() ? 0u : mesh.base_groups[f]; };
   std::stable_sort(order->begin(), order->end(), [&](uint32_t a, uint32_t b) { return group_of(a) < group_of(b); });
@@ -124,7 +156,7 @@ StatusOr<AttributedBase> BaseOf(const AttributedNormalMesh& mesh, const Attribut
       for (size_t a = 0; a < mesh.attributes.size(); ++a) {
         const LevelAttribute& attribute = mesh.attributes[a];
         BaseAttribute& to = base.attributes[a];
-        if (attribute.base_corners[f][k] != MeshAttribute::kNoValue) AppendIntegers(to.precision, &attribute.values[size_t{attribute.base_corners[f][k]} * attribute.components], &to.values);
+        if (attribute.base_corners[f][k] != MeshAttribute::kNoValue) AppendIntegers(to.precision, &attribute.values[size_t{attribute.base_corners[f][k]} * attribute.components], !options.joints.empty(), &to.values);
         to.values.resize(base.mesh.lattice.size() * to.numbers_per_value());
       }
     }
@@ -239,7 +271,7 @@ StatusOr<AttributedStream> EncodeAttributedStream(const AttributedNormalMesh& me
   LACERTA_RETURN_IF_ERROR(CheckShapes(mesh, options));
   std::vector<uint32_t> by_group;
   LACERTA_ASSIGN_OR_RETURN(const AttributedBase given, BaseOf(mesh, options, &by_group));
-  LACERTA_ASSIGN_OR_RETURN(CodedAttributedBase coded_base, EncodeAttributedBase(given));
+  LACERTA_ASSIGN_OR_RETURN(CodedAttributedBase coded_base, EncodeAttributedBase(given, options.joints));
   for (FaceSource& f : coded_base.faces) f.face = by_group[f.face];
   LACERTA_ASSIGN_OR_RETURN(const GluedBase glued, GlueBase(coded_base.base));
   LACERTA_ASSIGN_OR_RETURN(Reordered reordered, Reorder(mesh, glued, coded_base.faces));

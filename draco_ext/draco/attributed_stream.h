@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "decoder/joint_weights.h"
 #include "lacerta/attributed_base.h"
 #include "lacerta/attributed_levels.h"
 #include "lacerta/mesh.h"
@@ -30,6 +31,8 @@ struct AttributedStreamOptions {
   // Called with the surface as decoded and the values wanted there: sets those that fit it best, for vertices slide where the
   // shape does not show it. Empty: they stay.
   std::function<void(AttributedSemiRegularMesh*)> refit = {};
+  // Of the attribute of weights, which has a component for each: the base holds them as glTF does then, the four largest with the sum 1.
+  JointTable joints = {};
 };
 
 struct AttributedStream {

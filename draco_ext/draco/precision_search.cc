@@ -35,9 +35,10 @@ class PrecisionSearch {
  public:
   PrecisionSearch(const AttributedNormalMesh& mesh, const SurfaceErrors& remesh, const AttributedSurface& input, const ErrorTargets& targets,
                   const MeetOptions& options)
-      : mesh_(mesh), remesh_(remesh), meter_(input.meter), targets_(targets), options_(options) {
+      : mesh_(mesh), remesh_(remesh), input_(input), meter_(input.meter), targets_(targets), options_(options) {
     limits_.resize(mesh.attributes.size());
     precision_.lambda = UsualLambda(Psnr(targets.distance, meter_.diagonal()), meter_.diagonal());
+    precision_.joints = input.joints;
     precision_.refit = [&original = input.original](AttributedSemiRegularMesh* decoded) { FitLevelAttributes(original, decoded); };
     for (size_t a = 0; a < mesh.attributes.size(); ++a) {
       precision_.errors.push_back(std::sqrt(Allowed(remesh.attributes[a].rms_99, targets.attributes[a])) / UnitOf(a));
@@ -179,7 +180,7 @@ class PrecisionSearch {
 
   // Keeps it where it is better than the best.
   Status Measure(uint64_t num_samples) {
-    LACERTA_ASSIGN_OR_RETURN(last_.errors, meter_.Measure(FinestLevel(last_.stream.decoded), num_samples));
+    LACERTA_ASSIGN_OR_RETURN(last_.errors, input_.Measure(FinestLevel(last_.stream.decoded), num_samples));
     ++measurements_;
     last_.ratio = WorstRatio(last_.errors, targets_);
     last_.least_bytes = LeastBytes();
@@ -217,6 +218,7 @@ class PrecisionSearch {
 
   const AttributedNormalMesh& mesh_;
   const SurfaceErrors& remesh_;
+  const AttributedSurface& input_;
   const SurfaceErrorMeter& meter_;
   const ErrorTargets& targets_;
   const MeetOptions& options_;

@@ -51,6 +51,19 @@ Status ParseVec3(const Json& object, const char* key, Vec3f* value) {
   return Status();
 }
 
+// A table of weights needs weights, and names no joint twice.
+Status ParseJoints(const Json& json, ProgressiveStream* stream) {
+  if (Find(json, "joints") == nullptr) return Status();
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<uint64_t> joints, ParseIndices(json, "joints"));
+  const std::set<uint64_t> distinct(joints.begin(), joints.end());
+  const bool has_weights = std::count(stream->attributes.begin(), stream->attributes.end(), kWeightsName) == 1;
+  if (joints.empty() || distinct.size() != joints.size() || *distinct.rbegin() > std::numeric_limits<uint16_t>::max() || !has_weights) {
+    return InvalidData("\"joints\" are not those of weights");
+  }
+  stream->joints.assign(joints.begin(), joints.end());
+  return Status();
+}
+
 StatusOr<ProgressiveStream> ParseStream(const Json& json) {
   ProgressiveStream stream;
   LACERTA_ASSIGN_OR_RETURN(stream.vertex_counts, ParseIndices(json, "vertexCounts"));
@@ -68,6 +81,7 @@ StatusOr<ProgressiveStream> ParseStream(const Json& json) {
     if (!name->is_string()) return InvalidData("\"attributes\" holds something else than names");
     stream.attributes.push_back(name->get<std::string>());
   }
+  LACERTA_RETURN_IF_ERROR(ParseJoints(json, &stream));
   const size_t levels = stream.vertex_counts.size();
   if (levels == 0 || stream.triangle_counts.size() != levels || stream.errors.size() != levels) {
     return InvalidData("\"vertexCounts\", \"triangleCounts\" and \"errors\" are not of one length above 0");
@@ -192,6 +206,7 @@ Json FormatProgressive(const Progressive& progressive) {
     if (stream.smooth_normals) json["normals"] = "smooth";
     if (!stream.base_lengths.empty()) json["baseLengths"] = stream.base_lengths;
     if (!stream.attributes.empty()) json["attributes"] = stream.attributes;
+    if (!stream.joints.empty()) json["joints"] = stream.joints;
     streams.push_back(std::move(json));
   }
   Json json = {{"version", kProgressiveVersion}, {"data", progressive.data}};

@@ -44,8 +44,23 @@ StatusOr<VertexSoup::Attribute> PosesOf(const Primitive& primitive, const Skin& 
   return poses;
 }
 
+StatusOr<VertexSoup::Attribute> WeightsOf(const Primitive& primitive, const Skin& skin, const JointTable& joints) {
+  LACERTA_ASSIGN_OR_RETURN(const VertexInfluences influences, ReadInfluences(primitive, skin.num_joints));
+  VertexSoup::Attribute weights{kWeightsName, AttributeKind::kWeights, static_cast<uint32_t>(joints.size()), {}};
+  weights.values.resize(primitive.num_vertices * joints.size());
+  for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
+    float sum = 0.0f;
+    for (const Influence& influence : influences.Of(v)) sum += influence.weight;
+    for (const Influence& influence : influences.Of(v)) {
+      const auto joint = static_cast<size_t>(std::lower_bound(joints.begin(), joints.end(), influence.joint) - joints.begin());
+      weights.values[v * joints.size() + joint] = influence.weight / sum;
+    }
+  }
+  return weights;
+}
+
 StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const TexelScale& scale,
-                            OtherAttributes others, const Skin* skin, const std::set<std::string>& custom) {
+                            OtherAttributes others, const Skin* skin, const std::set<std::string>& custom, const JointTable& joints) {
   VertexSoup soup;
   TriangleMesh surface = Surface(primitive);
   soup.positions = std::move(surface.positions);
@@ -63,8 +78,8 @@ StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const Tex
     soup.attributes.push_back(std::move(values));
   }
   if (skin != nullptr) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute poses, PosesOf(primitive, *skin));
-    soup.attributes.push_back(std::move(poses));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute moved, joints.empty() ? PosesOf(primitive, *skin) : WeightsOf(primitive, *skin, joints));
+    soup.attributes.push_back(std::move(moved));
   }
   return soup;
 }
@@ -108,10 +123,10 @@ std::set<std::string> CustomAttributesOf(const std::vector<const Primitive*>& pr
 }
 
 StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
-                                          OtherAttributes others, const Skin* skin, const std::set<std::string>& custom) {
+                                          OtherAttributes others, const Skin* skin, const std::set<std::string>& custom, const JointTable& joints) {
   std::vector<VertexSoup> soups;
   for (size_t m = 0; m < primitives.size(); ++m) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale, others, skin, custom));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale, others, skin, custom, joints));
     soups.push_back(std::move(soup));
   }
   return WeldSoups(soups);

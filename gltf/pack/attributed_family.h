@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "decoder/joint_weights.h"
 #include "document/primitive.h"
 #include "lacerta/attributed_mesh.h"
 #include "lacerta/gltf.h"
@@ -35,11 +36,11 @@ enum class OtherAttributes { kRefuse, kLeaveOut };
 // units, root mean square over the poses. 3 numbers for each pose, over the root of the number of poses.
 inline constexpr const char* kPosesName = "POSES";
 
-// Primitive m becomes group m. Fails with kUnsupported on attributes to refuse, and like WeldSoups and, where there is a skin,
+// Primitive m becomes group m. With `joints`, all that move a vertex, what stands for the skin are the weights of these instead of poses. Fails with kUnsupported on attributes to refuse, and like WeldSoups and, where there is a skin,
 // ReadInfluences.
 StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
                                           OtherAttributes others = OtherAttributes::kRefuse, const Skin* skin = nullptr,
-                                          const std::set<std::string>& custom = {});
+                                          const std::set<std::string>& custom = {}, const JointTable& joints = {});
 
 // Whether there are any of those.
 bool HasOtherAttributes(const std::vector<const Primitive*>& primitives, const Skin* skin = nullptr,

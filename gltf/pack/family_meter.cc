@@ -16,6 +16,11 @@ constexpr uint64_t kPoseSamples = 50'000;  // in each pose
 
 }  // namespace
 
+void CloseUnseenSeams(std::vector<double> targets, double texture_size, AttributedMesh* mesh) {
+  for (double& target : targets) target *= kUnseen;
+  CloseSeams(targets, texture_size, mesh);
+}
+
 FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error, const AttributeTargets& targets,
                          uint64_t texel_side, TexelScale texels_per_unit, const Skin* skin)
     : primitives_(std::move(primitives)), error_(error), attribute_targets_(targets),
@@ -40,9 +45,7 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
   meter_ = std::move(meter).value();
   targets_ = FamilyTargets(original_, error, targets, texel_side);
   // Errors are measured against what came in.
-  std::vector<double> unseen = targets_.attributes;
-  for (double& tolerance : unseen) tolerance *= kUnseen;
-  CloseSeams(unseen, static_cast<double>(texel_side), &original_);
+  CloseUnseenSeams(targets_.attributes, static_cast<double>(texel_side), &original_);
   leaves_out_ = HasOtherAttributes(primitives_, skin_, custom_);
 }
 
@@ -65,10 +68,14 @@ ErrorTargets FamilyMeter::TargetsWith(const std::vector<double>& everywhere) con
 }
 
 StatusOr<double> FamilyMeter::WorstPose(const std::vector<const Primitive*>& stored) const {
+  return WorstPose([&](size_t pose) { return PosedSurface(stored, *skin_, pose); }, kPoseSamples);
+}
+
+StatusOr<double> FamilyMeter::WorstPose(const std::function<StatusOr<TriangleMesh>(size_t pose)>& posed, uint64_t num_samples) const {
   double worst = 0.0;
   for (size_t pose = 0; pose < poses_.size(); ++pose) {
-    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh surface, PosedSurface(stored, *skin_, pose));
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, poses_[pose].Measure(surface, SurfaceDistanceOptions::RmsOnly(kPoseSamples)));
+    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh surface, posed(pose));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, poses_[pose].Measure(surface, SurfaceDistanceOptions::RmsOnly(num_samples)));
     worst = std::max(worst, distance.Rms());
   }
   return worst;

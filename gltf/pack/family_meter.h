@@ -3,6 +3,7 @@
 #define LACERTA_PACK_FAMILY_METER_H_
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -50,6 +51,8 @@ class FamilyMeter {
 
   // d_S of the surface in the pose in which it is farthest from the original's, mesh units. Only with a skin.
   StatusOr<double> WorstPose(const std::vector<const Primitive*>& stored) const;
+  // The same of whatever `posed` makes of the surface in a pose of the skin.
+  StatusOr<double> WorstPose(const std::function<StatusOr<TriangleMesh>(size_t pose)>& posed, uint64_t num_samples) const;
 
   // The attribute of the original whose name in the surface (SoupName) this is; empty where it was left out.
   std::optional<size_t> IndexOf(const std::string& soup_name) const;
@@ -71,6 +74,9 @@ class FamilyMeter {
   bool leaves_out_ = false;
   std::set<std::string> custom_;
 };
+
+// CloseSeams where sides differ by a small share of an attribute's target.
+void CloseUnseenSeams(std::vector<double> targets, double texture_size, AttributedMesh* mesh);
 
 }  // namespace lacerta
 

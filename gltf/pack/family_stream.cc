@@ -1,6 +1,7 @@
 #include "pack/family_stream.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "draco/attributed_search.h"
 #include "lacerta/attributed_base.h"
 #include "lacerta/surface_distance.h"
+#include "pack/weighted_family.h"
 
 namespace lacerta {
 namespace {
@@ -73,10 +75,13 @@ EncodeReport ReportOf(const AttributedTrial& trial, const FamilyStream& stream, 
   return report;
 }
 
-StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const SurfaceErrorMeter& meter, const FamilyMeter& family) {
+// weighted: of a family with a skin.
+StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const SurfaceErrorMeter& meter, const FamilyMeter& family,
+                                      const std::optional<WeightedFamily>& weighted) {
   const AttributedStream& stream = trial.stream;
   FamilyStream result;
   result.description.attributes = NamesOf(stream.base);
+  if (weighted) result.description.joints = weighted->joints;
   LACERTA_RETURN_IF_ERROR(DescribeLevels(stream, meter, stream.bases.size(), &result.description));
   for (size_t g = 0; g < stream.bases.size(); ++g) {
     const Bytes& base = stream.bases[g];
@@ -89,6 +94,11 @@ StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const Surfac
       const BaseAttribute& attribute = stream.base.attributes[a];
       if (attribute.in_group[g] == 0) continue;
       group.ids.push_back({attribute.precision.name, static_cast<uint32_t>(a + 1)});
+      if (weighted && a == weighted->weights) {
+        group.ids.push_back({kJointsName, static_cast<uint32_t>(stream.base.attributes.size() + 1)});
+        reports.push_back({attribute.precision.name, 0, trial.errors.attributes[a].rms * weighted->reach, "units in the worst pose"});
+        continue;
+      }
       const AttributeKind kind = attribute.precision.kind;
       const bool direction = IsDirection(kind);
       const bool texture = kind == AttributeKind::kTextureCoordinates;
@@ -113,14 +123,24 @@ StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const Surfac
 StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, size_t most_bytes) {
   LACERTA_RETURN_IF_ERROR(family.status());
   if (family.leaves_out()) return Unsupported("has attributes that cannot be interpolated");
-  if (family.skin() != nullptr) return Unsupported("has a skin");
-  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original, PlainNames(family.original()));
+  std::optional<WeightedFamily> weighted;
+  if (family.skin() != nullptr) {
+    LACERTA_ASSIGN_OR_RETURN(weighted, ToWeightedFamily(family));
+  }
+  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original, PlainNames(weighted ? std::move(weighted->original) : family.original()));
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(original, family.meter().texture_size()));
   AttributedSearchOptions search;
   search.effort = effort;
   search.most_bytes = most_bytes;
-  LACERTA_ASSIGN_OR_RETURN(const AttributedTrial trial, SmallestAttributedStream(original, meter, family.targets(), search));
-  return ToFamilyStream(trial, meter, family);
+  if (weighted) {
+    search.joints = weighted->joints;
+    search.correct = [&](const AttributedMesh& mesh, uint64_t num_samples, SurfaceErrors* errors) {
+      return MeasureInPoses(family, *weighted, mesh, num_samples, errors);
+    };
+  }
+  LACERTA_ASSIGN_OR_RETURN(const AttributedTrial trial,
+                           SmallestAttributedStream(original, meter, weighted ? weighted->targets : family.targets(), search));
+  return ToFamilyStream(trial, meter, family, weighted);
 }
 
 }  // namespace lacerta

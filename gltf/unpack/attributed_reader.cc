@@ -40,7 +40,7 @@ StatusOr<std::vector<VertexSoup>> DecodeBases(const std::vector<Span<const uint8
                                               const ProgressiveStream& announced, const DecodeLimits& limits) {
   std::vector<VertexSoup> bases;
   for (const Span<const uint8_t> part : parts) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup base, DecodeAttributedGroup(part, announced.attributes, limits));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup base, DecodeAttributedGroup(part, announced.attributes, limits, announced.joints));
     bases.push_back(std::move(base));
   }
   return bases;
@@ -69,13 +69,14 @@ StatusOr<AttributedLevel> DecodeAttributedLevel(const GatheredStream& stream, co
     LACERTA_ASSIGN_OR_RETURN(bases.groups, DecodeBases(BaseParts(stream, announced), announced, options.limits));
     bases.is_complete = announced.vertex_counts.size() == 1;
     LACERTA_RETURN_IF_ERROR(CheckCounts(announced, bases));
+    for (VertexSoup& group : bases.groups) GatherWeights(announced.joints, &group);
     return bases;
   }
   LACERTA_ASSIGN_OR_RETURN(const RefinementInfo info, ReadRefinementInfo(refinement));
   LACERTA_RETURN_IF_ERROR(CheckAttributes(announced, info));
   std::vector<VertexSoup> bases;
   for (const Span<const uint8_t> part : BaseParts(stream, announced)) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup base, DecodeAttributedGroup(part, info.attributes, options.limits));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup base, DecodeAttributedGroup(part, info.attributes, options.limits, announced.joints));
     bases.push_back(std::move(base));
   }
   LACERTA_ASSIGN_OR_RETURN(const AttributedBase base, AttributedBaseFromSoups(bases, info.base_step, info.attributes));
@@ -95,6 +96,7 @@ StatusOr<AttributedLevel> DecodeAttributedLevel(const GatheredStream& stream, co
     result.groups = SplitIntoSoups(level, static_cast<uint32_t>(bases.size()));
   }
   LACERTA_RETURN_IF_ERROR(CheckCounts(announced, result));
+  for (VertexSoup& group : result.groups) GatherWeights(announced.joints, &group);
   return result;
 }
 

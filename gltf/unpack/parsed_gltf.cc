@@ -28,11 +28,11 @@ RefinedGeometry ToArrays(ProgressiveSurface surface) {
   geometry.positions = MakeFloatAccessor(mesh.positions).bytes;
   if (surface.smooth_normals) geometry.normals = MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles)).bytes;
   for (VertexSoup::Attribute& attribute : surface.attributes) {
-    AccessorData values = MakeFloatAccessor(attribute.values, attribute.components);
+    AccessorData values = ToAccessor(attribute);
     if (attribute.name == "NORMAL" && attribute.components == 3) {
       geometry.normals = std::move(values.bytes);
     } else {
-      geometry.attributes.push_back({std::move(attribute.name), attribute.components, std::move(values.bytes)});
+      geometry.attributes.push_back({std::move(attribute.name), attribute.components, std::move(values.bytes), static_cast<uint32_t>(values.type)});
     }
   }
   AccessorData indices = MakeIndexAccessor(mesh.triangles, mesh.positions.size());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "decoder/smooth_normals.h"
@@ -190,12 +191,26 @@ StatusOr<ProgressiveSurface> ReadSurface(const GltfDocument& document, const Sta
   return surface;
 }
 
+AccessorData ToAccessor(const VertexSoup::Attribute& attribute) {
+  AccessorData data = MakeFloatAccessor(attribute.values, attribute.components);
+  if (attribute.name != kJointsName) return data;
+  const bool is_short = std::any_of(attribute.values.begin(), attribute.values.end(), [](float joint) { return joint > std::numeric_limits<uint8_t>::max(); });
+  data.type = is_short ? ComponentType::kUint16 : ComponentType::kUint8;
+  data.bytes.clear();
+  for (const float joint : attribute.values) {
+    const auto index = static_cast<uint16_t>(joint);
+    data.bytes.push_back(static_cast<uint8_t>(index));
+    if (is_short) data.bytes.push_back(static_cast<uint8_t>(index >> 8));
+  }
+  return data;
+}
+
 Primitive ToPrimitive(const ProgressiveSurface& surface) {
   const TriangleMesh& mesh = surface.surface;
   Primitive primitive{mesh.positions.size(), mesh.triangles, {{"POSITION", MakeFloatAccessor(mesh.positions)}}};
   if (surface.smooth_normals) primitive.attributes.push_back({"NORMAL", MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles))});
   for (const VertexSoup::Attribute& attribute : surface.attributes) {
-    primitive.attributes.push_back({attribute.name, MakeFloatAccessor(attribute.values, attribute.components)});
+    primitive.attributes.push_back({attribute.name, ToAccessor(attribute)});
   }
   return primitive;
 }

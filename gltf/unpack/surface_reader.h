@@ -30,6 +30,9 @@ StatusOr<ProgressiveSurface> ReadRefinedSurface(const GltfDocument& document, co
 StatusOr<ProgressiveSurface> ReadSurface(const GltfDocument& document, const StatusOr<Progressive>& progressive,
                                          const Place& place, const UnpackOptions& options, AttributedCache* cache);
 
+// Values of an attribute that came with a surface: floats, and joints in as few bytes as hold them all.
+AccessorData ToAccessor(const VertexSoup::Attribute& attribute);
+
 // As a primitive: positions, attributes and derived normals of `surface`.
 Primitive ToPrimitive(const ProgressiveSurface& surface);
 

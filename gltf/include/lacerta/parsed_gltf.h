@@ -21,7 +21,8 @@ struct PrimitiveIndex {
 struct RefinedAttribute {
   std::string name;         // as in glTF
   uint32_t components = 1;  // 1..4: SCALAR, VEC2, VEC3, VEC4
-  Bytes values;             // #V x components floats
+  Bytes values;             // #V x components
+  uint32_t component_type = 5126;  // glTF componentType: floats, or of JOINTS_0 5121 or 5123 (8 or 16 bits)
 };
 
 // What primitives with LACERTA_mesh_progressive are to show instead of their fallback. The arrays are little endian and

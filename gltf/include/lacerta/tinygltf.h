@@ -222,7 +222,7 @@ inline void ShowGeometry(const RefinedGeometry& geometry, tinygltf::Model* model
   for (const RefinedAttribute& attribute : geometry.attributes) {
     // tinygltf's TINYGLTF_TYPE_VEC2 to VEC4 are the numbers of components.
     const int type = attribute.components == 1 ? TINYGLTF_TYPE_SCALAR : static_cast<int>(attribute.components);
-    attributes[attribute.name] = AddAccessor(attribute.values, TINYGLTF_COMPONENT_TYPE_FLOAT, type, geometry.num_vertices,
+    attributes[attribute.name] = AddAccessor(attribute.values, static_cast<int>(attribute.component_type), type, geometry.num_vertices,
                                              TINYGLTF_TARGET_ARRAY_BUFFER, model);
   }
   const int indices = AddAccessor(geometry.indices, static_cast<int>(geometry.index_type), TINYGLTF_TYPE_SCALAR,

@@ -1,0 +1,80 @@
+#include "decoder/joint_weights.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace lacerta {
+namespace {
+
+constexpr size_t kKept = 4;
+
+VertexSoup::Attribute* Find(VertexSoup* soup, const char* name) {
+  for (VertexSoup::Attribute& a : soup->attributes) {
+    if (a.name == name) return &a;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+FourWeights LargestFour(const float* row, const JointTable& joints) {
+  std::array<size_t, kKept> kept;  // by descending weight
+  size_t count = 0;
+  for (size_t c = 0; c < joints.size(); ++c) {
+    if (!(row[c] > 0)) continue;
+    size_t at = count;
+    while (at > 0 && row[c] > row[kept[at - 1]]) --at;
+    if (at == kKept) continue;
+    count = std::min(count + 1, kKept);
+    for (size_t i = count - 1; i > at; --i) kept[i] = kept[i - 1];
+    kept[at] = c;
+  }
+  FourWeights result;
+  if (count == 0) {
+    result.joints[0] = joints[0];
+    result.weights[0] = 1.0f;
+    return result;
+  }
+  float sum = 0;
+  for (size_t i = 0; i < count; ++i) sum += row[kept[i]];
+  for (size_t i = 0; i < count; ++i) {
+    result.joints[i] = joints[kept[i]];
+    result.weights[i] = row[kept[i]] / sum;
+  }
+  return result;
+}
+
+Status SpreadWeights(const JointTable& joints, VertexSoup* soup) {
+  VertexSoup::Attribute* const weights = Find(soup, kWeightsName);
+  if (weights == nullptr) return Status();
+  const VertexSoup::Attribute* const named = Find(soup, kJointsName);
+  if (named == nullptr || named->components != kKept || weights->components != kKept) return InvalidData("the base has weights without joints");
+  std::vector<float> values(soup->positions.size() * joints.size(), 0.0f);
+  for (size_t i = 0; i < weights->values.size(); ++i) {
+    if (weights->values[i] == 0) continue;
+    const auto joint = std::find(joints.begin(), joints.end(), named->values[i]);
+    if (joint == joints.end()) return InvalidData("the base names joint " + std::to_string(static_cast<int64_t>(named->values[i])) + ", which the stream has not got");
+    values[i / kKept * joints.size() + static_cast<size_t>(joint - joints.begin())] += weights->values[i];
+  }
+  weights->kind = AttributeKind::kWeights;
+  weights->components = static_cast<uint32_t>(joints.size());
+  weights->values = std::move(values);
+  soup->attributes.erase(soup->attributes.begin() + (named - soup->attributes.data()));
+  return Status();
+}
+
+void GatherWeights(const JointTable& joints, VertexSoup* soup) {
+  VertexSoup::Attribute* const weights = Find(soup, kWeightsName);
+  if (weights == nullptr || joints.empty() || weights->components != joints.size()) return;
+  VertexSoup::Attribute four{kWeightsName, AttributeKind::kWeights, kKept, {}}, named{kJointsName, AttributeKind::kGeneric, kKept, {}};
+  for (size_t v = 0; v < soup->positions.size(); ++v) {
+    const FourWeights of = LargestFour(&weights->values[v * joints.size()], joints);
+    four.values.insert(four.values.end(), of.weights.begin(), of.weights.end());
+    named.values.insert(named.values.end(), of.joints.begin(), of.joints.end());
+  }
+  *weights = std::move(four);
+  soup->attributes.push_back(std::move(named));
+}
+
+}  // namespace lacerta
