@@ -61,6 +61,19 @@ draco::GeometryAttribute::Type DracoType(const AttributeLattice& p) {
   }
 }
 
+// Each joint in the same place wherever that is free: neighbors that agree compress better.
+FourWeights InSlots(const FourWeights& largest) {
+  FourWeights result;
+  for (size_t i = 0; i < largest.weights.size(); ++i) {
+    if (largest.weights[i] == 0) continue;
+    size_t slot = largest.joints[i] % result.joints.size();
+    while (result.weights[slot] > 0) slot = (slot + 1) % result.joints.size();
+    result.joints[slot] = largest.joints[i];
+    result.weights[slot] = largest.weights[i];
+  }
+  return result;
+}
+
 // One group on its way into Draco: its own vertices are points [first, end) of the base.
 struct Group {
   uint32_t first_face = 0, num_faces = 0;
@@ -176,7 +189,7 @@ class GroupEncoder {
     std::vector<uint16_t> joints;
     for (uint32_t v = 0; v < group_.num_vertices; ++v) {
       const std::vector<float> row(points + v * joints_.size(), points + (v + 1) * joints_.size());
-      const FourWeights four = LargestFour(row.data(), joints_);
+      const FourWeights four = InSlots(LargestFour(row.data(), joints_));
       for (size_t i = 0; i < four.weights.size(); ++i) {
         weights.push_back(static_cast<int32_t>(std::lround(four.weights[i] / step)));
         joints.push_back(four.joints[i]);

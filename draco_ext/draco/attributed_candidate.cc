@@ -14,7 +14,7 @@ constexpr uint64_t kRoughSamples = 20'000;
 
 StatusOr<SurfaceErrors> AttributedSurface::Measure(const AttributedMesh& mesh, uint64_t num_samples) const {
   LACERTA_ASSIGN_OR_RETURN(SurfaceErrors errors, meter.Measure(mesh, num_samples));
-  if (correct) LACERTA_RETURN_IF_ERROR(correct(mesh, num_samples, &errors));
+  if (meaning.correct) LACERTA_RETURN_IF_ERROR(meaning.correct(mesh, num_samples, &errors));
   return errors;
 }
 

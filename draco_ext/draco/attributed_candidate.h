@@ -21,6 +21,13 @@ namespace lacerta {
 // Sets errors of a surface that show elsewhere than in what was measured, as weights of joints do; empty: there are none.
 using ErrorCorrection = std::function<Status(const AttributedMesh&, uint64_t num_samples, SurfaceErrors*)>;
 
+// What values are for, where they do not say it themselves.
+struct AttributeMeaning {
+  JointTable joints = {};     // both as in AttributedStreamOptions
+  ErrorFactors factors = {};
+  ErrorCorrection correct = {};
+};
+
 // A surface with attributes, prepared once for all candidates. References must outlive the candidates.
 struct AttributedSurface {
   const GroupSurface& original;
@@ -28,8 +35,7 @@ struct AttributedSurface {
   const AttributedParts& parts;
   const InputSurface& surface;     // of parts.refined.surface
   const CollapseHistory& history;  // of the same
-  JointTable joints = {};          // as in AttributedStreamOptions
-  ErrorCorrection correct = {};
+  AttributeMeaning meaning = {};
 
   StatusOr<SurfaceErrors> Measure(const AttributedMesh& mesh, uint64_t num_samples) const;
 };

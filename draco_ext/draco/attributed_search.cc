@@ -159,7 +159,7 @@ StatusOr<AttributedTrial> SmallestAttributedStream(const AttributedMesh& mesh, c
   if (LeastBytesOfBase(coarsest + parts.still.surface.triangles.size(), mesh) >= options.most_bytes) return Unsupported("most of it are small parts");
   const InputSurface surface(parts.refined.surface, parts.topology);
   const GroupSurface original(mesh);
-  const AttributedSurface input{original, meter, parts, surface, history, options.joints, options.correct};
+  const AttributedSurface input{original, meter, parts, surface, history, options.meaning};
   return BaseWalk(input, targets, options).Smallest();
 }
 

@@ -19,8 +19,7 @@ struct AttributedSearchOptions {
   // Streams of so many bytes or more are of no use: the search ends as soon as none seems to get below.
   size_t most_bytes = std::numeric_limits<size_t>::max();
   uint64_t num_samples = 100'000;  // of the measure that the stream is held to
-  JointTable joints = {};          // as in AttributedStreamOptions
-  ErrorCorrection correct = {};
+  AttributeMeaning meaning = {};
 };
 
 // Walks over base sizes, from a usual one for as long as streams get smaller, and at each over precisions; ends early where most_bytes

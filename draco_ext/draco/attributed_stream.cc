@@ -288,9 +288,14 @@ StatusOr<AttributedStream> EncodeAttributedStream(const AttributedNormalMesh& me
   WrittenAttributes written{BaseChecksum(coded_base.base), {}, {}};
   for (size_t a = 0; a < glued.attributes.size(); ++a) {
     const std::vector<Triangle> corners = WithoutStill(glued.attributes[a].base_corners, tags.still);
-    LACERTA_ASSIGN_OR_RETURN(const AttributeTarget attribute,
+    LACERTA_ASSIGN_OR_RETURN(AttributeTarget attribute,
                              MakeAttributeTarget(coded_base.base.attributes[a].precision, corners, glued.attributes[a].values, reordered.values[a],
                                                  topologies, stream.decoded.surface.positions));
+    if (options.factors) {
+      AttributedSemiRegularMesh wanted = stream.decoded;
+      wanted.attributes[a].values = reordered.values[a];
+      attribute.factors = options.factors(wanted, a);
+    }
     CodedAttribute best = EncodeAttribute(attribute, options.errors[a], topologies, stream.decoded.surface.positions);
     stream.errors.push_back(AttributeRmsError(attribute, best.decoded));
     stream.residual_bytes.push_back(static_cast<size_t>(AttributeBits(attribute, best) / 8));

@@ -21,6 +21,8 @@ namespace lacerta {
 // none may slide.
 StatusOr<NormalMesh> AsNormalMesh(SemiRegularMesh surface);
 
+using ErrorFactors = std::function<std::vector<float>(const AttributedSemiRegularMesh&, size_t attribute)>;
+
 struct AttributedStreamOptions {
   double lambda = 0;       // squared model units per bit of positions, > 0: as in NormalMeshCandidate::Code
   int last_detailed = 0;   // for StepsForSlope; 0: LastDetailedLevel
@@ -33,6 +35,9 @@ struct AttributedStreamOptions {
   std::function<void(AttributedSemiRegularMesh*)> refit = {};
   // Of the attribute of weights, which has a component for each: the base holds them as glTF does then, the four largest with the sum 1.
   JointTable joints = {};
+  // Called for each attribute with the surface as decoded and the values wanted there: #values x components factors on how far values are off, at most
+  // 1 where one matters less; empty: all 1.
+  ErrorFactors factors = {};
 };
 
 struct AttributedStream {

@@ -38,7 +38,8 @@ class PrecisionSearch {
       : mesh_(mesh), remesh_(remesh), input_(input), meter_(input.meter), targets_(targets), options_(options) {
     limits_.resize(mesh.attributes.size());
     precision_.lambda = UsualLambda(Psnr(targets.distance, meter_.diagonal()), meter_.diagonal());
-    precision_.joints = input.joints;
+    precision_.joints = input.meaning.joints;
+    precision_.factors = input.meaning.factors;
     precision_.refit = [&original = input.original](AttributedSemiRegularMesh* decoded) { FitLevelAttributes(original, decoded); };
     for (size_t a = 0; a < mesh.attributes.size(); ++a) {
       precision_.errors.push_back(std::sqrt(Allowed(remesh.attributes[a].rms_99, targets.attributes[a])) / UnitOf(a));

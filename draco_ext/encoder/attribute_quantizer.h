@@ -20,6 +20,7 @@ struct AttributeTarget {
   std::vector<float> base_values;       // rows of level 0 as decoded
   std::vector<float> values;            // rows of all levels as wanted
   std::vector<float> weights;           // #rows, share of the area at each; they sum to 1 or, without area, to 0
+  std::vector<float> factors = {};      // #rows x components, on what values are off, of no direction; empty: all 1
 };
 
 // base: level 0 as decoded; values: rows of all levels in the order of its wedge mesh; positions: of the surface's finest level;

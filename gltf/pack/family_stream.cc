@@ -133,8 +133,9 @@ StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, si
   search.effort = effort;
   search.most_bytes = most_bytes;
   if (weighted) {
-    search.joints = weighted->joints;
-    search.correct = [&](const AttributedMesh& mesh, uint64_t num_samples, SurfaceErrors* errors) {
+    search.meaning.joints = weighted->joints;
+    search.meaning.factors = [&](const AttributedSemiRegularMesh& mesh, size_t attribute) { return FactorsInPoses(family, *weighted, mesh, attribute); };
+    search.meaning.correct = [&](const AttributedMesh& mesh, uint64_t num_samples, SurfaceErrors* errors) {
       return MeasureInPoses(family, *weighted, mesh, num_samples, errors);
     };
   }

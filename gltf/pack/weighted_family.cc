@@ -10,6 +10,7 @@
 #include "geometry/close_seams.h"
 #include "pack/attributed_family.h"
 #include "pack/skin.h"
+#include "remesh/level_wedges.h"
 
 namespace lacerta {
 namespace {
@@ -116,6 +117,44 @@ Status MeasureInPoses(const FamilyMeter& meter, const WeightedFamily& family, co
   AttributeError& error = errors->attributes[family.weights];
   error.rms = error.rms_99 = worst / family.reach;
   return Status();
+}
+
+std::vector<float> FactorsInPoses(const FamilyMeter& meter, const WeightedFamily& family, const AttributedSemiRegularMesh& levels, size_t attribute) {
+  if (attribute != family.weights) return {};
+  const AttributedMesh mesh = FinestLevel(levels);
+  const MeshAttribute& weights = mesh.attributes[attribute];
+  const Skin& skin = *meter.skin();
+  std::vector<float> factors(weights.values.size(), 1.0f);
+  std::vector<uint8_t> is_known(weights.num_values(), 0);
+  for (size_t f = 0; f < mesh.surface.triangles.size(); ++f) {
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t row = weights.corners[f][k];
+      if (row == kNone || is_known[row] != 0) continue;
+      is_known[row] = 1;
+      const Vec3d position = Vec3Cast<double>(mesh.surface.positions[mesh.surface.triangles[f][k]]);
+      const float* const own = &weights.values[size_t{row} * weights.components];
+      std::vector<double> squares(family.joints.size(), 0.0);
+      for (const std::vector<Transform>& pose : skin.poses) {
+        std::vector<Vec3d> moved;
+        Vec3d posed;
+        double sum = 0;
+        for (size_t c = 0; c < family.joints.size(); ++c) {
+          moved.push_back(Apply(pose[family.joints[c]], position));
+          const double weight = std::max(static_cast<double>(own[c]), 0.0);
+          posed += moved[c] * weight;
+          sum += weight;
+        }
+        for (size_t c = 0; c < squares.size() && sum > 0; ++c) {
+          const Vec3d apart = moved[c] - posed * (1 / sum);
+          squares[c] = std::max(squares[c], Dot(apart, apart));
+        }
+      }
+      for (size_t c = 0; c < squares.size(); ++c) {
+        factors[size_t{row} * weights.components + c] = static_cast<float>(std::min(1.0, std::sqrt(squares[c]) / family.reach));
+      }
+    }
+  }
+  return factors;
 }
 
 }  // namespace lacerta

@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "decoder/joint_weights.h"
+#include "lacerta/attributed_levels.h"
 #include "lacerta/attributed_mesh.h"
 #include "lacerta/status.h"
 #include "pack/family_meter.h"
@@ -27,6 +29,10 @@ StatusOr<WeightedFamily> ToWeightedFamily(const FamilyMeter& meter);
 // Sets the error of weights to the farthest that a surface with attributes like those of `family` is from the original in a pose, in units of reach.
 // Weights are those that a reader makes of the components (LargestFour).
 Status MeasureInPoses(const FamilyMeter& meter, const WeightedFamily& family, const AttributedMesh& mesh, uint64_t num_samples, SurfaceErrors* errors);
+
+// How far the worst pose moves a vertex for each of its weights, in units of reach and at most 1: of the values of the attribute `weights` at all
+// levels, which are #values x #joints; empty for other attributes.
+std::vector<float> FactorsInPoses(const FamilyMeter& meter, const WeightedFamily& family, const AttributedSemiRegularMesh& mesh, size_t attribute);
 
 }  // namespace lacerta
 
