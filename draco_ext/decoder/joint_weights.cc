@@ -19,28 +19,25 @@ VertexSoup::Attribute* Find(VertexSoup* soup, const char* name) {
 }  // namespace
 
 FourWeights LargestFour(const float* row, const JointTable& joints) {
-  std::array<size_t, kKept> kept;  // by descending weight
-  size_t count = 0;
-  for (size_t c = 0; c < joints.size(); ++c) {
-    if (!(row[c] > 0)) continue;
-    size_t at = count;
-    while (at > 0 && row[c] > row[kept[at - 1]]) --at;
-    if (at == kKept) continue;
-    count = std::min(count + 1, kKept);
-    for (size_t i = count - 1; i > at; --i) kept[i] = kept[i - 1];
-    kept[at] = c;
-  }
   FourWeights result;
-  if (count == 0) {
-    result.joints[0] = joints[0];
-    result.weights[0] = 1.0f;
-    return result;
+  std::array<float, kKept>& weights = result.weights;  // descending
+  for (size_t c = 0; c < joints.size(); ++c) {
+    size_t at = kKept;
+    for (; at > 0 && row[c] > weights[at - 1]; --at) {
+      if (at == kKept) continue;
+      weights[at] = weights[at - 1];
+      result.joints[at] = result.joints[at - 1];
+    }
+    if (at == kKept) continue;
+    weights[at] = row[c];
+    result.joints[at] = joints[c];
   }
-  float sum = 0;
-  for (size_t i = 0; i < count; ++i) sum += row[kept[i]];
-  for (size_t i = 0; i < count; ++i) {
-    result.joints[i] = joints[kept[i]];
-    result.weights[i] = row[kept[i]] / sum;
+  const float sum = weights[0] + weights[1] + weights[2] + weights[3];
+  if (sum > 0) {
+    for (float& weight : weights) weight /= sum;
+  } else {
+    weights[0] = 1.0f;
+    result.joints[0] = joints[0];
   }
   return result;
 }

@@ -234,9 +234,10 @@ class GroupEncoder {
 
 StatusOr<VertexSoup::Attribute> ReadAttribute(const draco::Mesh& mesh, const draco::PointAttribute& from, const std::string& name) {
   const auto n = static_cast<uint32_t>(from.num_components());
-  const bool is_joints = name == kJointsName && (from.data_type() == draco::DT_UINT8 || from.data_type() == draco::DT_UINT16);
-  if (n == 0 || (from.data_type() != draco::DT_FLOAT32 && !is_joints) || from.byte_stride() < int64_t{n} * draco::DataTypeLength(from.data_type()))
-    return InvalidData("attribute " + name + " of the base is not of floats");
+  const draco::DataType type = from.data_type();
+  const bool is_usual = name == kJointsName ? type == draco::DT_UINT8 || type == draco::DT_UINT16 : type == draco::DT_FLOAT32;
+  if (n == 0 || !is_usual || from.byte_stride() < int64_t{n} * draco::DataTypeLength(type))
+    return InvalidData("attribute " + name + " of the base is not of " + (name == kJointsName ? "whole numbers" : "floats"));
   VertexSoup::Attribute result{name, AttributeKind::kGeneric, n, std::vector<float>(size_t{n} * mesh.num_points())};
   for (uint32_t v = 0; v < mesh.num_points(); ++v) {
     const draco::AttributeValueIndex index = from.mapped_index(draco::PointIndex(v));
@@ -325,6 +326,8 @@ StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std
     LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute attribute, ReadAttribute(*stock.mesh, *from, i < names.size() ? names[i] : kJointsName));
     soup.attributes.push_back(std::move(attribute));
   }
+  constexpr uint64_t kMostPerVertex = 4;  // of all that the limits allow: a small base may name many joints
+  if (soup.positions.size() * joints.size() > kMostPerVertex * limits.max_vertices) return LimitExceeded("the base has too many weights");
   if (!joints.empty()) LACERTA_RETURN_IF_ERROR(SpreadWeights(joints, &soup));
   return soup;
 }

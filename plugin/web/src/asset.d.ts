@@ -9,6 +9,8 @@ export interface ProgressiveStream {
   normals?: 'smooth';
   baseLengths?: number[];
   attributes?: string[];
+  /** Of a skinned surface: which joint of the skin each component of WEIGHTS_0 belongs to, as the decoder has it. */
+  joints?: number[];
   segments: Segment[];
 }
 export interface Progressive {

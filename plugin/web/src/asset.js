@@ -10,7 +10,7 @@ const areNumbers = (value, length) => Array.isArray(value) && value.length === l
 
 /**
  * Reads the extension at the root of a glTF document. Returns undefined where there is none, else
- * {data, refinements, streams: [{vertexCounts, triangleCounts, errors, min, max, normals, baseLengths, attributes, segments: [{offset, length}]}],
+ * {data, refinements, streams: [{vertexCounts, triangleCounts, errors, min, max, normals, baseLengths, attributes, joints, segments: [{offset, length}]}],
  * order: [{stream, part, offset, length}], length, available: less where the asset was trimmed}; offsets are from the front of all segments. Throws
  * where it contradicts itself.
  */
@@ -40,10 +40,12 @@ export function parseProgressive(json) {
   });
   streams.forEach((stream, s) => {
     demand(stream.segments.length === stream.errors.length, `stream ${s} has ${stream.segments.length} segments`);
-    const {baseLengths, attributes = []} = stream;
+    const {baseLengths, attributes = [], joints} = stream;
     demand(baseLengths === undefined ? attributes.length === 0 : areIndices(baseLengths) && baseLengths.length > 0 && Array.isArray(attributes) &&
       attributes.every(name => typeof name === 'string') && baseLengths.reduce((sum, length) => sum + length, 0) === stream.segments[0].length,
     `the attributes or groups of stream ${s} are malformed`);
+    demand(joints === undefined || areIndices(joints) && joints.length > 0 && joints.length <= 1024 && new Set(joints).size === joints.length && Math.max(...joints) < 65536 &&
+      attributes.includes('WEIGHTS_0'), `the joints of stream ${s} are not those of weights`);
   });
   const views = [extension.data, extension.refinements].filter(view => view !== undefined).map(view => json.bufferViews[view].byteLength ?? Infinity);
   return {data: extension.data, refinements: extension.refinements, streams, order, length: offset,

@@ -6,6 +6,7 @@ import {Extension, ExtensionProperty, PropertyType, RefMap} from '@gltf-transfor
 import {baseParts, extensionName, parseProgressive, progressivePrimitive} from './asset.js';
 import {Decoder, instantiate} from './decoder.js';
 import {compile} from './index.js';
+import {baseNames, gatherWeights, spreadWeights} from './joint_weights.js';
 
 const kDraco = 'KHR_draco_mesh_compression';
 const kComponentBytes = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4};
@@ -254,7 +255,7 @@ export function toLevel({level = Infinity, draco3d} = {}) {
           const primitive = document.createPrimitive().setMaterial(progressiveMesh.getMaterial(i)).setIndices(accessor('SCALAR', indices))
             .setAttribute('POSITION', accessor('VEC3', positions));
           if (normals) primitive.setAttribute('NORMAL', accessor('VEC3', normals));
-          for (const [name, values] of Object.entries(attributes)) {
+          for (const [name, values] of Object.entries(gatherWeights(progressive.streams[stream].joints, attributes))) {
             primitive.setAttribute(name, accessor(kTypes[3 * values.length / positions.length], values));
           }
           mesh.addPrimitive(primitive);
@@ -280,7 +281,8 @@ function decodeStream(wasm, stream, data, level, draco3d) {
       if (!draco3d) throw new Error(`${extensionName}: the base is in Draco form; give a draco3d decoder module`);
       const section = decoder.baseSection();
       for (const [g, {begin, end}] of baseParts(stream).entries()) {
-        const base = decodeBase(draco3d, baseLengths ? section.subarray(begin, end) : section, attributes);
+        const base = decodeBase(draco3d, baseLengths ? section.subarray(begin, end) : section, baseNames(stream));
+        base.attributes = spreadWeights(stream.joints, base.attributes);
         if (baseLengths) decoder.setBaseGroup(g, base);
         else decoder.setBase(base.positions, base.indices);
       }

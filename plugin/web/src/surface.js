@@ -1,6 +1,7 @@
 // One stream on the screen: its decoder in a worker, the part that is shown, and the objects of three.js that show it.
 import {nameInThree, toBase} from './arrays.js';
 import {baseParts} from './asset.js';
+import {baseNames, gatherWeights, spreadWeights} from './joint_weights.js';
 
 const isCompact = bytes => bytes.length > 11 && bytes[8] === 0x4c && bytes[11] >> 4 === 1;
 // At most one new geometry per frame, but frames that take long, or none in a hidden page, hold nothing up.
@@ -99,9 +100,10 @@ export class Surface {
     const {groups, decodeBase} = this.#options, parts = baseParts(this.stream);
     for (const [g, {objects, hasFallback, attributes}] of groups.entries()) {
       if (!hasFallback && !decodeBase) throw new Error('its base is a Draco stream, and no dracoLoader was given');
-      const names = this.stream.attributes ?? [], {begin, end} = parts[g];
+      const names = baseNames(this.stream), {begin, end} = parts[g];
       const geometry = hasFallback ? objects[0].geometry : await decodeBase(bytes.slice(begin, end), names, attributes);
       const base = toBase(geometry, names);
+      base.attributes = spreadWeights(this.stream.joints, base.attributes);
       if (this.#isGrouped) await this.#decoder.setBaseGroup(g, base);
       else await this.#decoder.setBase(base.positions, base.indices);
     }
@@ -154,7 +156,7 @@ export class Surface {
     geometry.userData = old.userData;
     geometry.setAttribute('position', new BufferAttribute(positions, 3));
     if (normals) geometry.setAttribute('normal', new BufferAttribute(normals, 3));
-    for (const [name, values] of Object.entries(attributes)) {
+    for (const [name, values] of Object.entries(gatherWeights(this.stream.joints, attributes))) {
       geometry.setAttribute(nameInThree(name), new BufferAttribute(values, values.length * 3 / positions.length));
     }
     geometry.setIndex(new BufferAttribute(indices, 1));

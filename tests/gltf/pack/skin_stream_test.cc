@@ -1,0 +1,162 @@
+// Skinned surfaces as progressive streams: smaller than simplified ones, within the error in poses, legal at every level.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "gltf/skinned_asset.h"
+#include "lacerta/parsed_gltf.h"
+#include "lacerta/surface_distance.h"
+
+namespace lacerta {
+namespace {
+
+using testing::PosedAt;
+
+// Bumps along the arm, no two alike, and no normals.
+Bytes BumpyArm(bool halved) {
+  shapes::SkinnedSoup arm = shapes::SkinnedCylinder(128, 160);
+  for (Vec3f& p : arm.soup.positions) {
+    const float angle = std::atan2(p.y, p.x);
+    const float scale = 1 + 0.1f * std::sin(p.z) + 0.03f * std::sin(5 * angle + 2 * p.z) + 0.02f * std::sin(9 * angle - 7 * p.z);
+    p = {p.x * scale, p.y * scale, p.z};
+  }
+  std::vector<VertexSoup::Attribute>& attributes = arm.soup.attributes;
+  attributes.erase(std::remove_if(attributes.begin(), attributes.end(), [](const VertexSoup::Attribute& a) { return a.name == "NORMAL"; }), attributes.end());
+  return testing::SkinnedCylinderAsset(arm, 60.0, halved);
+}
+
+const Bytes& Arm() {
+  static const Bytes* const kArm = new Bytes(BumpyArm(true));
+  return *kArm;
+}
+
+PackResult Pack(const Bytes& asset, LevelChoice levels) {
+  PackOptions options;
+  options.encode.levels = levels;
+  options.encode.effort = Effort::kFast;
+  return PackGltf(asset, options).value();
+}
+
+const PackResult& Packed() {
+  static const PackResult* const kPacked = new PackResult(Pack(Arm(), LevelChoice::kWhereTheyPay));
+  return *kPacked;
+}
+
+uint64_t BytesOf(const PackResult& packed) {
+  return packed.report.primitives[0].bytes_after + packed.report.primitives[1].bytes_after;
+}
+
+Bytes Unpacked(std::optional<int> level = std::nullopt) {
+  UnpackOptions options;
+  options.level = level;
+  return UnpackGltf(Packed().glb, options).value().glb;
+}
+
+TriangleMesh BothHalves(const Bytes& plain, size_t animation, double time) {
+  TriangleMesh both = PosedAt(plain, animation, time, 0);
+  const TriangleMesh second = PosedAt(plain, animation, time, 1);
+  const auto offset = static_cast<uint32_t>(both.positions.size());
+  both.positions.insert(both.positions.end(), second.positions.begin(), second.positions.end());
+  for (const Triangle& t : second.triangles) both.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  return both;
+}
+
+TEST(SkinStream, TakesLessThanHalfOfWhatSimplifiedDoes) {
+  for (const PrimitiveReport& primitive : Packed().report.primitives) EXPECT_EQ(primitive.storage, PrimitiveStorage::kProgressive) << primitive.reason;
+  const uint64_t bytes = BytesOf(Packed()), simplified = BytesOf(Pack(Arm(), LevelChoice::kNever));
+  EXPECT_LT(2 * bytes, simplified) << bytes << " / " << simplified;
+  EXPECT_GT(8 * bytes, simplified) << bytes << " / " << simplified;
+}
+
+TEST(SkinStream, HoldsItsErrorInPoses) {
+  const Bytes unpacked = Unpacked();
+  double worst = 1000;
+  for (const double time : {0.0, 0.29, 0.5, 0.83, 1.0}) {
+    const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(BothHalves(Arm(), 0, time)).value();
+    worst = std::min(worst, Psnr(meter.Measure(BothHalves(unpacked, 0, time)).value().Rms(), meter.diagonal()));
+  }
+  EXPECT_GT(worst, 69.9);
+  EXPECT_LT(worst, 72.0);
+}
+
+// Vertices of the halves' border are the same in every pose, bit by bit.
+TEST(SkinStream, NoLevelCracksInPoses) {
+  const int num_levels = static_cast<int>(Packed().report.primitives[0].encode.levels.size()) - 1;
+  ASSERT_GE(num_levels, 2);
+  size_t before = 0;
+  for (int level = 0; level <= num_levels; ++level) {
+    const Bytes plain = Unpacked(level);
+    const auto num_shared = [&](double time) {
+      std::set<std::tuple<float, float, float>> points[2];
+      for (uint64_t half = 0; half < 2; ++half) {
+        for (const Vec3f& p : PosedAt(plain, 0, time, half).positions) points[half].insert({p.x, p.y, p.z});
+      }
+      return static_cast<size_t>(std::count_if(points[0].begin(), points[0].end(), [&](const auto& p) { return points[1].count(p) > 0; }));
+    };
+    EXPECT_EQ(num_shared(0.0), num_shared(0.7));
+    EXPECT_GT(num_shared(0.7), before);
+    before = num_shared(0.7);
+  }
+}
+
+void ExpectLegalWeights(const Primitive& primitive) {
+  const Attribute *joints = primitive.Find("JOINTS_0"), *weights = primitive.Find("WEIGHTS_0");
+  ASSERT_TRUE(joints != nullptr && weights != nullptr);
+  EXPECT_EQ(joints->data.type, ComponentType::kUint8);
+  for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
+    float sum = 0.0f;
+    for (uint32_t c = 0; c < 4; ++c) {
+      sum += weights->data.Float(v, c);
+      EXPECT_GE(weights->data.Float(v, c), 0.0f);
+      EXPECT_LT(joints->data.Uint(v, c), weights->data.Float(v, c) > 0.0f ? 3u : 1u);
+    }
+    EXPECT_NEAR(sum, 1.0f, 1e-6f) << v;
+  }
+}
+
+TEST(SkinStream, EveryLevelAndTheFallbackAreLegal) {
+  for (const Bytes& glb : {Packed().glb, Unpacked(0), Unpacked(1), Unpacked()}) {  // the first as readers without the extension see it
+    const GltfDocument document = ParseGltf(glb, "").value();
+    for (uint64_t half = 0; half < 2; ++half) {
+      ExpectLegalWeights(ReadPrimitive(document, PrimitiveAt(document, {0, half}), {}).value());
+    }
+  }
+  EXPECT_TRUE(ValidateGltf(Packed().glb, {}).IsValid());
+}
+
+TEST(SkinStream, LoadersGetJointsAsIntegers) {
+  const GltfDocument document = ParseGltf(Packed().glb, "").value();
+  std::vector<Span<const uint8_t>> buffers;
+  for (const Bytes& buffer : document.buffers) buffers.emplace_back(buffer);
+  const std::vector<RefinedGeometry> geometries = RefineParsedGltf(document.json.dump(), buffers, {}).value();
+  ASSERT_EQ(geometries.size(), 2u);
+  for (const RefinedAttribute& attribute : geometries[0].attributes) {
+    EXPECT_EQ(attribute.component_type, attribute.name == "JOINTS_0" ? 5121u : 5126u) << attribute.name;
+    EXPECT_EQ(attribute.values.size(), attribute.components * geometries[0].num_vertices * (attribute.name == "JOINTS_0" ? 1 : sizeof(float)));
+  }
+}
+
+TEST(SkinStream, AnotherTableOfJointsIsNoticed) {
+  const auto note_with = [&](const Json& joints) {
+    GltfDocument document = ParseGltf(Packed().glb, "").value();
+    Json& stream = document.json["extensions"]["LACERTA_mesh_progressive"]["streams"][0u];
+    EXPECT_EQ(stream["joints"], Json::array({0, 1, 2}));
+    if (joints.is_null()) stream.erase("joints");
+    else stream["joints"] = joints;
+    const std::vector<ProgressiveSurface> surfaces = ReadProgressive(FormatGlb(document), {}).value();
+    EXPECT_TRUE(surfaces[0].from_fallback);
+    EXPECT_FALSE(surfaces[0].surface.triangles.empty());
+    return surfaces[0].note;
+  };
+  EXPECT_NE(note_with({0, 1, 3}).find("joint 2"), std::string::npos);
+  EXPECT_NE(note_with({0, 1, 1}).find("joints"), std::string::npos);
+  EXPECT_NE(note_with({0, 1, 70'000}).find("joints"), std::string::npos);
+  EXPECT_NE(note_with(Json::array()).find("joints"), std::string::npos);
+  EXPECT_FALSE(note_with({0, 1, 2, 3}).empty());
+  EXPECT_FALSE(note_with(nullptr).empty());
+}
+
+}  // namespace
+}  // namespace lacerta
