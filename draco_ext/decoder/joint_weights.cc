@@ -46,12 +46,15 @@ Status SpreadWeights(const JointTable& joints, VertexSoup* soup) {
   VertexSoup::Attribute* const weights = Find(soup, kWeightsName);
   if (weights == nullptr) return Status();
   const VertexSoup::Attribute* const named = Find(soup, kJointsName);
-  if (named == nullptr || named->components != kKept || weights->components != kKept) return InvalidData("the base has weights without joints");
+  if (named == nullptr || named->components != kKept || weights->components != kKept)
+    return InvalidData("the base has weights without joints");
   std::vector<float> values(soup->positions.size() * joints.size(), 0.0f);
   for (size_t i = 0; i < weights->values.size(); ++i) {
     if (weights->values[i] == 0) continue;
     const auto joint = std::find(joints.begin(), joints.end(), named->values[i]);
-    if (joint == joints.end()) return InvalidData("the base names joint " + std::to_string(static_cast<int64_t>(named->values[i])) + ", which the stream has not got");
+    if (joint == joints.end())
+      return InvalidData("the base names joint " + std::to_string(static_cast<int64_t>(named->values[i])) +
+                         ", which the stream has not got");
     values[i / kKept * joints.size() + static_cast<size_t>(joint - joints.begin())] += weights->values[i];
   }
   weights->kind = AttributeKind::kWeights;
@@ -64,7 +67,8 @@ Status SpreadWeights(const JointTable& joints, VertexSoup* soup) {
 void GatherWeights(const JointTable& joints, VertexSoup* soup) {
   VertexSoup::Attribute* const weights = Find(soup, kWeightsName);
   if (weights == nullptr || joints.empty() || weights->components != joints.size()) return;
-  VertexSoup::Attribute four{kWeightsName, AttributeKind::kWeights, kKept, {}}, named{kJointsName, AttributeKind::kGeneric, kKept, {}};
+  VertexSoup::Attribute four{kWeightsName, AttributeKind::kWeights, kKept, {}},
+      named{kJointsName, AttributeKind::kGeneric, kKept, {}};
   for (size_t v = 0; v < soup->positions.size(); ++v) {
     const FourWeights of = LargestFour(&weights->values[v * joints.size()], joints);
     four.values.insert(four.values.end(), of.weights.begin(), of.weights.end());

@@ -1,4 +1,5 @@
-// Weights of joints as streams carry them, a number for every joint that moves the surface, and as glTF holds them, four joints for each vertex.
+// Weights of joints as streams carry them, a number for every joint that moves the surface, and as glTF holds them,
+// four joints for each vertex.
 #ifndef LACERTA_DECODER_JOINT_WEIGHTS_H_
 #define LACERTA_DECODER_JOINT_WEIGHTS_H_
 
@@ -23,13 +24,13 @@ struct FourWeights {
   std::array<float, 4> weights = {};    // not negative, with the sum 1
 };
 
-// The four largest (of equal ones the first), scaled to the sum 1; all of the first one where none is above 0. row: one number for each of
-// `joints`, of which there is one at least.
+// The four largest (of equal ones the first), scaled to the sum 1; all of the first one where none is above 0. row: one
+// number for each of `joints`, of which there is one at least.
 FourWeights LargestFour(const float* row, const JointTable& joints);
 
-// Makes one attribute of a soup's JOINTS_0 and WEIGHTS_0 (4 components each): WEIGHTS_0 with a component for each of `joints`. Soups
-// without WEIGHTS_0 stay as they are. Fails with kInvalidData where JOINTS_0 is missing, or names a joint with a weight that is not
-// in the table.
+// Makes one attribute of a soup's JOINTS_0 and WEIGHTS_0 (4 components each): WEIGHTS_0 with a component for each of
+// `joints`. Soups without WEIGHTS_0 stay as they are. Fails with kInvalidData where JOINTS_0 is missing, or names a
+// joint with a weight that is not in the table.
 Status SpreadWeights(const JointTable& joints, VertexSoup* soup);
 
 // The way back, by LargestFour. JOINTS_0 becomes the last attribute, of whole numbers.

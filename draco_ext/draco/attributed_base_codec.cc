@@ -6,7 +6,6 @@
 #include <draco/mesh/mesh.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "common/octahedral.h"
+#include "draco/base_weights.h"
 #include "draco/mesh_conversion.h"
 #include "draco/stock_stream.h"
 
@@ -61,19 +61,6 @@ draco::GeometryAttribute::Type DracoType(const AttributeLattice& p) {
   }
 }
 
-// Each joint in the same place wherever that is free: neighbors that agree compress better.
-FourWeights InSlots(const FourWeights& largest) {
-  FourWeights result;
-  for (size_t i = 0; i < largest.weights.size(); ++i) {
-    if (largest.weights[i] == 0) continue;
-    size_t slot = largest.joints[i] % result.joints.size();
-    while (result.weights[slot] > 0) slot = (slot + 1) % result.joints.size();
-    result.joints[slot] = largest.joints[i];
-    result.weights[slot] = largest.weights[i];
-  }
-  return result;
-}
-
 // One group on its way into Draco: its own vertices are points [first, end) of the base.
 struct Group {
   uint32_t first_face = 0, num_faces = 0;
@@ -101,7 +88,8 @@ std::vector<Group> SplitGroups(const AttributedBase& base) {
 
 class GroupEncoder {
  public:
-  GroupEncoder(const AttributedBase& base, const Group& group, const JointTable& joints) : base_(base), group_(group), joints_(joints) {}
+  GroupEncoder(const AttributedBase& base, const Group& group, const JointTable& joints)
+      : base_(base), group_(group), joints_(joints) {}
 
   StatusOr<Bytes> Encode(size_t group) {
     mesh_.set_num_points(group_.num_vertices);
@@ -121,7 +109,8 @@ class GroupEncoder {
       if (a.precision.octahedral_bits > 0) {
         AddNormals(unique_id, a.precision.octahedral_bits, values);
       } else if (a.precision.kind == AttributeKind::kWeights && !joints_.empty()) {
-        LACERTA_RETURN_IF_ERROR(AddWeights(unique_id, a.precision.step, values).WithContext("attribute " + a.precision.name));
+        LACERTA_RETURN_IF_ERROR(
+            AddWeights(unique_id, a.precision.step, values).WithContext("attribute " + a.precision.name));
       } else {
         LACERTA_RETURN_IF_ERROR(AddLattice(DracoType(a.precision), unique_id, a.precision.step, values, a.precision.components)
                                     .WithContext("attribute " + a.precision.name));
@@ -185,29 +174,22 @@ class GroupEncoder {
   }
 
   Status AddWeights(uint32_t unique_id, float step, const int32_t* points) {
-    std::vector<int32_t> weights;
-    std::vector<uint16_t> joints;
-    for (uint32_t v = 0; v < group_.num_vertices; ++v) {
-      const std::vector<float> row(points + v * joints_.size(), points + (v + 1) * joints_.size());
-      const FourWeights four = InSlots(LargestFour(row.data(), joints_));
-      for (size_t i = 0; i < four.weights.size(); ++i) {
-        weights.push_back(static_cast<int32_t>(std::lround(four.weights[i] / step)));
-        joints.push_back(four.joints[i]);
-      }
-    }
+    const PlacedWeights placed = PlaceWeights(points, group_.num_vertices, step, joints_);
     constexpr int8_t kKept = 4;
     const bool is_short = *std::max_element(joints_.begin(), joints_.end()) > std::numeric_limits<uint8_t>::max();
     draco::GeometryAttribute description;
-    description.Init(draco::GeometryAttribute::GENERIC, nullptr, kKept, is_short ? draco::DT_UINT16 : draco::DT_UINT8, false, is_short ? 2 * kKept : kKept, 0);
-    draco::PointAttribute* const to = mesh_.attribute(mesh_.AddAttribute(description, /*identity_mapping=*/true, group_.num_vertices));
+    description.Init(draco::GeometryAttribute::GENERIC, nullptr, kKept, is_short ? draco::DT_UINT16 : draco::DT_UINT8,
+                     false, is_short ? 2 * kKept : kKept, 0);
+    draco::PointAttribute* const to =
+        mesh_.attribute(mesh_.AddAttribute(description, /*identity_mapping=*/true, group_.num_vertices));
     to->set_unique_id(static_cast<uint32_t>(base_.attributes.size() + 1));
     if (is_short) {
-      to->buffer()->Write(0, joints.data(), joints.size() * sizeof(joints[0]));
+      to->buffer()->Write(0, placed.joints.data(), placed.joints.size() * sizeof(placed.joints[0]));
     } else {
-      const Bytes narrow(joints.begin(), joints.end());
+      const Bytes narrow(placed.joints.begin(), placed.joints.end());
       to->buffer()->Write(0, narrow.data(), narrow.size());
     }
-    return AddLattice(draco::GeometryAttribute::GENERIC, unique_id, step, weights.data(), kKept);
+    return AddLattice(draco::GeometryAttribute::GENERIC, unique_id, step, placed.points.data(), kKept);
   }
 
   StatusOr<Bytes> EncodeBy(int method) const {
@@ -235,14 +217,17 @@ class GroupEncoder {
 StatusOr<VertexSoup::Attribute> ReadAttribute(const draco::Mesh& mesh, const draco::PointAttribute& from, const std::string& name) {
   const auto n = static_cast<uint32_t>(from.num_components());
   const draco::DataType type = from.data_type();
-  const bool is_usual = name == kJointsName ? type == draco::DT_UINT8 || type == draco::DT_UINT16 : type == draco::DT_FLOAT32;
+  const bool is_usual =
+      name == kJointsName ? type == draco::DT_UINT8 || type == draco::DT_UINT16 : type == draco::DT_FLOAT32;
   if (n == 0 || !is_usual || from.byte_stride() < int64_t{n} * draco::DataTypeLength(type))
-    return InvalidData("attribute " + name + " of the base is not of " + (name == kJointsName ? "whole numbers" : "floats"));
+    return InvalidData("attribute " + name + " of the base is not of " +
+                       (name == kJointsName ? "whole numbers" : "floats"));
   VertexSoup::Attribute result{name, AttributeKind::kGeneric, n, std::vector<float>(size_t{n} * mesh.num_points())};
   for (uint32_t v = 0; v < mesh.num_points(); ++v) {
     const draco::AttributeValueIndex index = from.mapped_index(draco::PointIndex(v));
     if (index.value() >= from.size()) return InvalidData("a value of attribute " + name + " is missing in the base");
-    if (!from.ConvertValue<float>(index, static_cast<int8_t>(n), &result.values[size_t{n} * v])) return InvalidData("attribute " + name + " of the base cannot be read");
+    if (!from.ConvertValue<float>(index, static_cast<int8_t>(n), &result.values[size_t{n} * v]))
+      return InvalidData("attribute " + name + " of the base cannot be read");
   }
   return result;
 }
@@ -315,25 +300,27 @@ StatusOr<CodedAttributedBase> EncodeAttributedBase(const AttributedBase& base, c
   return result;
 }
 
-StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<std::string>& names, const DecodeLimits& limits,
-                                           const JointTable& joints) {
+StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<std::string>& names,
+                                           const DecodeLimits& limits, const JointTable& joints) {
   LACERTA_ASSIGN_OR_RETURN(const StockMesh stock, DecodeStockStream(stream, limits));
   LACERTA_ASSIGN_OR_RETURN(TriangleMesh mesh, FromDracoMesh(*stock.mesh));
   VertexSoup soup{std::move(mesh.positions), std::move(mesh.triangles), {}};
   for (size_t i = 0; i < names.size() + (joints.empty() ? 0 : 1); ++i) {
     const draco::PointAttribute* const from = stock.mesh->GetAttributeByUniqueId(static_cast<uint32_t>(i + 1));
     if (from == nullptr) continue;
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute attribute, ReadAttribute(*stock.mesh, *from, i < names.size() ? names[i] : kJointsName));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute attribute,
+                             ReadAttribute(*stock.mesh, *from, i < names.size() ? names[i] : kJointsName));
     soup.attributes.push_back(std::move(attribute));
   }
   constexpr uint64_t kMostPerVertex = 4;  // of all that the limits allow: a small base may name many joints
-  if (soup.positions.size() * joints.size() > kMostPerVertex * limits.max_vertices) return LimitExceeded("the base has too many weights");
+  if (soup.positions.size() * joints.size() > kMostPerVertex * limits.max_vertices)
+    return LimitExceeded("the base has too many weights");
   if (!joints.empty()) LACERTA_RETURN_IF_ERROR(SpreadWeights(joints, &soup));
   return soup;
 }
 
-StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributeLattice>& precision, const DecodeLimits& limits,
-                                           const JointTable& joints) {
+StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributeLattice>& precision,
+                                           const DecodeLimits& limits, const JointTable& joints) {
   std::vector<std::string> names;
   for (const AttributeLattice& p : precision) names.push_back(p.name);
   LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, DecodeAttributedGroup(stream, names, limits, joints));

@@ -18,12 +18,13 @@
 
 namespace lacerta {
 
-// Sets errors of a surface that show elsewhere than in what was measured, as weights of joints do; empty: there are none.
+// Sets errors of a surface that show elsewhere than in what was measured, as weights of joints do; empty: there are
+// none.
 using ErrorCorrection = std::function<Status(const AttributedMesh&, uint64_t num_samples, SurfaceErrors*)>;
 
 // What values are for, where they do not say it themselves.
 struct AttributeMeaning {
-  JointTable joints = {};     // both as in AttributedStreamOptions
+  JointTable joints = {};  // both as in AttributedStreamOptions
   ErrorFactors factors = {};
   ErrorCorrection correct = {};
 };

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "common/stream_layout.h"
 #include "draco/attributed_base_codec.h"
 #include "draco/base_mesh_codec.h"
+#include "draco/base_weights.h"
 #include "encoder/attribute_quantizer.h"
 #include "encoder/coefficient_descent.h"
 #include "encoder/level_order.h"
@@ -41,8 +41,7 @@ AttributeLattice PrecisionFor(const LevelAttribute& a, double error, bool is_fou
   constexpr float kMostLatticePoint = 65535.0f;  // times a step of 8 bits it is exact in float
   const double unit = a.kind == AttributeKind::kTangent ? error / kDegreesPerRadian : error;
   if (a.kind == AttributeKind::kWeights && is_four) {
-    constexpr int kFewestBits = 3, kMostBits = 14;  // a power of two: 1 is on the lattice
-    p.step = static_cast<float>(std::exp2(-std::clamp(static_cast<int>(std::ceil(-std::log2(kStepOverError * unit))), kFewestBits, kMostBits)));
+    p.step = WeightStep(kStepOverError * unit);
     return p;
   }
   p.step = ShortStep(std::max({static_cast<float>(kStepOverError * unit), 1.01f * largest / kMostLatticePoint, 1e-30f}));
@@ -73,29 +72,9 @@ Status CheckShapes(const AttributedNormalMesh& mesh, const AttributedStreamOptio
   return Status();
 }
 
-// The four largest, on the lattice with the sum 1: what is missing goes to those that rounding took most from.
-std::vector<int32_t> RoundWeights(const AttributeLattice& p, const float* row) {
-  JointTable components(p.components);
-  std::iota(components.begin(), components.end(), uint16_t{0});
-  const FourWeights four = LargestFour(row, components);
-  std::array<int32_t, 4> points;
-  auto left = static_cast<int32_t>(std::lround(1 / p.step));
-  for (size_t i = 0; i < points.size(); ++i) left -= points[i] = static_cast<int32_t>(four.weights[i] / p.step);
-  const auto lost = [&](size_t i) { return four.weights[i] / p.step - static_cast<float>(points[i]); };
-  for (; left > 0; --left) {
-    size_t most = 0;
-    for (size_t i = 1; i < points.size(); ++i) most = lost(i) > lost(most) ? i : most;
-    ++points[most];
-  }
-  std::vector<int32_t> values(p.components, 0);
-  for (size_t i = 0; i < points.size(); ++i) values[four.joints[i]] += points[i];
-  return values;
-}
-
 void AppendIntegers(const AttributeLattice& p, const float* row, bool is_four, std::vector<int32_t>* values) {
   if (p.kind == AttributeKind::kWeights && is_four) {
-    const std::vector<int32_t> points = RoundWeights(p, row);
-    values->insert(values->end(), points.begin(), points.end());
+    AppendRoundedWeights(row, p.components, p.step, values);
     return;
   }
   if (p.octahedral_bits > 0) {
@@ -131,7 +110,10 @@ StatusOr<AttributedBase> BaseOf(const AttributedNormalMesh& mesh, const Attribut
   AttributedBase base;
   base.mesh.step = lattice.step;
   base.group_sizes.assign(num_groups, 0);
-  for (size_t i = 0; i < mesh.attributes.size(); ++i) base.attributes.push_back({PrecisionFor(mesh.attributes[i], options.errors[i], !options.joints.empty()), {}, std::vector<uint8_t>(num_groups, 0)});
+  for (size_t i = 0; i < mesh.attributes.size(); ++i)
+    base.attributes.push_back({PrecisionFor(mesh.attributes[i], options.errors[i], !options.joints.empty()),
+                               {},
+                               std::vector<uint8_t>(num_groups, 0)});
   for (uint32_t f = 0; f < surface.base_triangles.size(); ++f) order->push_back(f);
   const auto group_of = [&](uint32_t f) { return mesh.base_groups.empty() ? 0u : mesh.base_groups[f]; };
   std::stable_sort(order->begin(), order->end(), [&](uint32_t a, uint32_t b) { return group_of(a) < group_of(b); });
@@ -156,7 +138,9 @@ StatusOr<AttributedBase> BaseOf(const AttributedNormalMesh& mesh, const Attribut
       for (size_t a = 0; a < mesh.attributes.size(); ++a) {
         const LevelAttribute& attribute = mesh.attributes[a];
         BaseAttribute& to = base.attributes[a];
-        if (attribute.base_corners[f][k] != MeshAttribute::kNoValue) AppendIntegers(to.precision, &attribute.values[size_t{attribute.base_corners[f][k]} * attribute.components], !options.joints.empty(), &to.values);
+        if (attribute.base_corners[f][k] != MeshAttribute::kNoValue)
+          AppendIntegers(to.precision, &attribute.values[size_t{attribute.base_corners[f][k]} * attribute.components],
+                         !options.joints.empty(), &to.values);
         to.values.resize(base.mesh.lattice.size() * to.numbers_per_value());
       }
     }
@@ -288,9 +272,10 @@ StatusOr<AttributedStream> EncodeAttributedStream(const AttributedNormalMesh& me
   WrittenAttributes written{BaseChecksum(coded_base.base), {}, {}};
   for (size_t a = 0; a < glued.attributes.size(); ++a) {
     const std::vector<Triangle> corners = WithoutStill(glued.attributes[a].base_corners, tags.still);
-    LACERTA_ASSIGN_OR_RETURN(AttributeTarget attribute,
-                             MakeAttributeTarget(coded_base.base.attributes[a].precision, corners, glued.attributes[a].values, reordered.values[a],
-                                                 topologies, stream.decoded.surface.positions));
+    LACERTA_ASSIGN_OR_RETURN(
+        AttributeTarget attribute,
+        MakeAttributeTarget(coded_base.base.attributes[a].precision, corners, glued.attributes[a].values,
+                            reordered.values[a], topologies, stream.decoded.surface.positions));
     if (options.factors) {
       AttributedSemiRegularMesh wanted = stream.decoded;
       wanted.attributes[a].values = reordered.values[a];

@@ -33,10 +33,11 @@ struct AttributedStreamOptions {
   // Called with the surface as decoded and the values wanted there: sets those that fit it best, for vertices slide where the
   // shape does not show it. Empty: they stay.
   std::function<void(AttributedSemiRegularMesh*)> refit = {};
-  // Of the attribute of weights, which has a component for each: the base holds them as glTF does then, the four largest with the sum 1.
+  // Of the attribute of weights, which has a component for each: the base holds them as glTF does then, the four
+  // largest with the sum 1.
   JointTable joints = {};
-  // Called for each attribute with the surface as decoded and the values wanted there: #values x components factors on how far values are off, at most
-  // 1 where one matters less; empty: all 1.
+  // Called for each attribute with the surface as decoded and the values wanted there: #values x components factors on
+  // how far values are off, at most 1 where one matters less; empty: all 1.
   ErrorFactors factors = {};
 };
 

@@ -33,8 +33,8 @@ struct ErrorLimits {
 // The precisions of one candidate, corrected from attempt to attempt.
 class PrecisionSearch {
  public:
-  PrecisionSearch(const AttributedNormalMesh& mesh, const SurfaceErrors& remesh, const AttributedSurface& input, const ErrorTargets& targets,
-                  const MeetOptions& options)
+  PrecisionSearch(const AttributedNormalMesh& mesh, const SurfaceErrors& remesh, const AttributedSurface& input,
+                  const ErrorTargets& targets, const MeetOptions& options)
       : mesh_(mesh), remesh_(remesh), input_(input), meter_(input.meter), targets_(targets), options_(options) {
     limits_.resize(mesh.attributes.size());
     precision_.lambda = UsualLambda(Psnr(targets.distance, meter_.diagonal()), meter_.diagonal());

@@ -38,8 +38,8 @@ void Difference(const AttributeLattice& p, const AttributeWedges& wedges, const 
   for (uint32_t c = 0; c < difference->size(); ++c) (*difference)[c] = wanted[row * p.components + c] - predicted[row * p.components + c];
 }
 
-// The residual of a difference, in steps: that of the nearest value, or the one before it where that saves more bits than it is farther off. factor: by
-// which it counts how far that is; where it counts less there may be none at all.
+// The residual of a difference, in steps: that of the nearest value, or the one before it where that saves more bits
+// than it is farther off. factor: by which it counts how far that is; where it counts less there may be none at all.
 int32_t ChooseResidual(float difference, float factor, SetModels& models, const CoefficientContext& context) {
   constexpr float kSquaredStepsPerBit = 0.08f;  // 0.06 to 0.12 take about the same
   const auto nearest = static_cast<int32_t>(RoundToStep(difference, 1.0f));
@@ -146,12 +146,13 @@ CodedAttribute QuantizeAttribute(const AttributeTarget& target, const AttributeH
       for (size_t c = 0; c < difference.size(); ++c) differences[c * num_edges + e] = difference[c] / step;
     }
     const bool continues = i + 1 < header.steps.size() && header.steps[i + 1] > 0;
-    CodeAttributeLevel(wedges.topology, step, continues, &state, &coded.residuals[i], &meter,
-                       [&](uint32_t c, uint32_t e, SetModels& models, const CoefficientContext& context, int32_t* value) {
-                         const size_t row = size_t{wedges.topology.num_vertices} + e;
-                         const float factor = target.factors.empty() ? 1.0f : target.factors[row * header.precision.components + c];
-                         *value = ChooseResidual(differences[c * num_edges + e], factor, models, context);
-                       });
+    CodeAttributeLevel(
+        wedges.topology, step, continues, &state, &coded.residuals[i], &meter,
+        [&](uint32_t c, uint32_t e, SetModels& models, const CoefficientContext& context, int32_t* value) {
+          const size_t row = size_t{wedges.topology.num_vertices} + e;
+          const float factor = target.factors.empty() ? 1.0f : target.factors[row * header.precision.components + c];
+          *value = ChooseResidual(differences[c * num_edges + e], factor, models, context);
+        });
     AddResiduals(header, wedges, surface, step, coded.residuals[i], &coded.decoded);
   }
   return coded;

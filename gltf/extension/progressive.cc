@@ -58,7 +58,8 @@ Status ParseJoints(const Json& json, ProgressiveStream* stream) {
   const std::set<uint64_t> distinct(joints.begin(), joints.end());
   const bool has_weights = std::count(stream->attributes.begin(), stream->attributes.end(), kWeightsName) == 1;
   constexpr size_t kMostJoints = 1024;  // components of a stream
-  if (joints.empty() || joints.size() > kMostJoints || distinct.size() != joints.size() || *distinct.rbegin() > std::numeric_limits<uint16_t>::max() || !has_weights) {
+  if (joints.empty() || joints.size() > kMostJoints || distinct.size() != joints.size() ||
+      *distinct.rbegin() > std::numeric_limits<uint16_t>::max() || !has_weights) {
     return InvalidData("\"joints\" are not those of weights");
   }
   stream->joints.assign(joints.begin(), joints.end());

@@ -28,8 +28,8 @@ struct ProgressiveStream {
   // stream for each group, and the names of the attributes, of which attribute i has the Draco id i + 1.
   std::vector<uint64_t> base_lengths;
   std::vector<std::string> attributes;
-  // Of a skinned surface: which joint of the skin each component of the stream's WEIGHTS_0 belongs to. The parts of the base then have WEIGHTS_0
-  // and, with the id after those of all attributes, JOINTS_0 as glTF does.
+  // Of a skinned surface: which joint of the skin each component of the stream's WEIGHTS_0 belongs to. The parts of the
+  // base then have WEIGHTS_0 and, with the id after those of all attributes, JOINTS_0 as glTF does.
   JointTable joints;
 };
 

@@ -52,15 +52,16 @@ StatusOr<VertexSoup::Attribute> WeightsOf(const Primitive& primitive, const Skin
     float sum = 0.0f;
     for (const Influence& influence : influences.Of(v)) sum += influence.weight;
     for (const Influence& influence : influences.Of(v)) {
-      const auto joint = static_cast<size_t>(std::lower_bound(joints.begin(), joints.end(), influence.joint) - joints.begin());
+      const auto joint =
+          static_cast<size_t>(std::lower_bound(joints.begin(), joints.end(), influence.joint) - joints.begin());
       weights.values[v * joints.size() + joint] = influence.weight / sum;
     }
   }
   return weights;
 }
 
-StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const TexelScale& scale,
-                            OtherAttributes others, const Skin* skin, const std::set<std::string>& custom, const JointTable& joints) {
+StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const TexelScale& scale, OtherAttributes others,
+                            const Skin* skin, const std::set<std::string>& custom, const JointTable& joints) {
   VertexSoup soup;
   TriangleMesh surface = Surface(primitive);
   soup.positions = std::move(surface.positions);
@@ -78,7 +79,8 @@ StatusOr<VertexSoup> ToSoup(const Primitive& primitive, size_t member, const Tex
     soup.attributes.push_back(std::move(values));
   }
   if (skin != nullptr) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute moved, joints.empty() ? PosesOf(primitive, *skin) : WeightsOf(primitive, *skin, joints));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup::Attribute moved,
+                             joints.empty() ? PosesOf(primitive, *skin) : WeightsOf(primitive, *skin, joints));
     soup.attributes.push_back(std::move(moved));
   }
   return soup;
@@ -123,7 +125,8 @@ std::set<std::string> CustomAttributesOf(const std::vector<const Primitive*>& pr
 }
 
 StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
-                                          OtherAttributes others, const Skin* skin, const std::set<std::string>& custom, const JointTable& joints) {
+                                          OtherAttributes others, const Skin* skin, const std::set<std::string>& custom,
+                                          const JointTable& joints) {
   std::vector<VertexSoup> soups;
   for (size_t m = 0; m < primitives.size(); ++m) {
     LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, ToSoup(*primitives[m], m, scale, others, skin, custom, joints));

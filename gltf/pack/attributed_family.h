@@ -36,7 +36,8 @@ enum class OtherAttributes { kRefuse, kLeaveOut };
 // units, root mean square over the poses. 3 numbers for each pose, over the root of the number of poses.
 inline constexpr const char* kPosesName = "POSES";
 
-// Primitive m becomes group m. With `joints`, all that move a vertex, what stands for the skin are the weights of these instead of poses. Fails with kUnsupported on attributes to refuse, and like WeldSoups and, where there is a skin,
+// Primitive m becomes group m. With `joints`, all that move a vertex, what stands for the skin are the weights of these
+// instead of poses. Fails with kUnsupported on attributes to refuse, and like WeldSoups and, where there is a skin,
 // ReadInfluences.
 StatusOr<AttributedMesh> ToAttributedMesh(const std::vector<const Primitive*>& primitives, const TexelScale& scale,
                                           OtherAttributes others = OtherAttributes::kRefuse, const Skin* skin = nullptr,

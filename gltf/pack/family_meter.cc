@@ -71,11 +71,13 @@ StatusOr<double> FamilyMeter::WorstPose(const std::vector<const Primitive*>& sto
   return WorstPose([&](size_t pose) { return PosedSurface(stored, *skin_, pose); }, kPoseSamples);
 }
 
-StatusOr<double> FamilyMeter::WorstPose(const std::function<StatusOr<TriangleMesh>(size_t pose)>& posed, uint64_t num_samples) const {
+StatusOr<double> FamilyMeter::WorstPose(const std::function<StatusOr<TriangleMesh>(size_t pose)>& posed,
+                                        uint64_t num_samples) const {
   double worst = 0.0;
   for (size_t pose = 0; pose < poses_.size(); ++pose) {
     LACERTA_ASSIGN_OR_RETURN(const TriangleMesh surface, posed(pose));
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, poses_[pose].Measure(surface, SurfaceDistanceOptions::RmsOnly(num_samples)));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance,
+                             poses_[pose].Measure(surface, SurfaceDistanceOptions::RmsOnly(num_samples)));
     worst = std::max(worst, distance.Rms());
   }
   return worst;

@@ -52,7 +52,8 @@ class FamilyMeter {
   // d_S of the surface in the pose in which it is farthest from the original's, mesh units. Only with a skin.
   StatusOr<double> WorstPose(const std::vector<const Primitive*>& stored) const;
   // The same of whatever `posed` makes of the surface in a pose of the skin.
-  StatusOr<double> WorstPose(const std::function<StatusOr<TriangleMesh>(size_t pose)>& posed, uint64_t num_samples) const;
+  StatusOr<double> WorstPose(const std::function<StatusOr<TriangleMesh>(size_t pose)>& posed,
+                             uint64_t num_samples) const;
 
   // The attribute of the original whose name in the surface (SoupName) this is; empty where it was left out.
   std::optional<size_t> IndexOf(const std::string& soup_name) const;

@@ -76,8 +76,8 @@ EncodeReport ReportOf(const AttributedTrial& trial, const FamilyStream& stream, 
 }
 
 // weighted: of a family with a skin.
-StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const SurfaceErrorMeter& meter, const FamilyMeter& family,
-                                      const std::optional<WeightedFamily>& weighted) {
+StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const SurfaceErrorMeter& meter,
+                                      const FamilyMeter& family, const std::optional<WeightedFamily>& weighted) {
   const AttributedStream& stream = trial.stream;
   FamilyStream result;
   result.description.attributes = NamesOf(stream.base);
@@ -96,7 +96,8 @@ StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const Surfac
       group.ids.push_back({attribute.precision.name, static_cast<uint32_t>(a + 1)});
       if (weighted && a == weighted->weights) {
         group.ids.push_back({kJointsName, static_cast<uint32_t>(stream.base.attributes.size() + 1)});
-        reports.push_back({attribute.precision.name, 0, trial.errors.attributes[a].rms * weighted->reach, "units in the worst pose"});
+        reports.push_back(
+            {attribute.precision.name, 0, trial.errors.attributes[a].rms * weighted->reach, "units in the worst pose"});
         continue;
       }
       const AttributeKind kind = attribute.precision.kind;
@@ -127,20 +128,24 @@ StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, si
   if (family.skin() != nullptr) {
     LACERTA_ASSIGN_OR_RETURN(weighted, ToWeightedFamily(family));
   }
-  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original, PlainNames(weighted ? std::move(weighted->original) : family.original()));
+  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original,
+                           PlainNames(weighted ? std::move(weighted->original) : family.original()));
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(original, family.meter().texture_size()));
   AttributedSearchOptions search;
   search.effort = effort;
   search.most_bytes = most_bytes;
   if (weighted) {
     search.meaning.joints = weighted->joints;
-    search.meaning.factors = [&](const AttributedSemiRegularMesh& mesh, size_t attribute) { return FactorsInPoses(family, *weighted, mesh, attribute); };
+    search.meaning.factors = [&](const AttributedSemiRegularMesh& mesh, size_t attribute) {
+      return FactorsInPoses(family, *weighted, mesh, attribute);
+    };
     search.meaning.correct = [&](const AttributedMesh& mesh, uint64_t num_samples, SurfaceErrors* errors) {
       return MeasureInPoses(family, *weighted, mesh, num_samples, errors);
     };
   }
-  LACERTA_ASSIGN_OR_RETURN(const AttributedTrial trial,
-                           SmallestAttributedStream(original, meter, weighted ? weighted->targets : family.targets(), search));
+  LACERTA_ASSIGN_OR_RETURN(
+      const AttributedTrial trial,
+      SmallestAttributedStream(original, meter, weighted ? weighted->targets : family.targets(), search));
   return ToFamilyStream(trial, meter, family, weighted);
 }
 

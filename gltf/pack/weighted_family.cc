@@ -17,8 +17,8 @@ namespace {
 
 constexpr uint32_t kNone = MeshAttribute::kNoValue;
 
-// How far apart joints that move the same vertex put it, root mean square over the vertices of the pose where that is most; what one weight gains
-// another loses.
+// How far apart joints that move the same vertex put it, root mean square over the vertices of the pose where that is
+// most; what one weight gains another loses.
 StatusOr<double> ReachOf(const FamilyMeter& meter) {
   const Skin& skin = *meter.skin();
   std::vector<double> squares(skin.poses.size(), 0.0);
@@ -29,7 +29,8 @@ StatusOr<double> ReachOf(const FamilyMeter& meter) {
     for (size_t v = 0; v < surface.positions.size(); ++v) {
       const Span<const Influence> own = influences.Of(v);
       if (own.size() < 2) continue;
-      const auto most = std::max_element(own.begin(), own.end(), [](const Influence& a, const Influence& b) { return a.weight < b.weight; });
+      const auto most = std::max_element(own.begin(), own.end(),
+                                         [](const Influence& a, const Influence& b) { return a.weight < b.weight; });
       const Vec3d position = Vec3Cast<double>(surface.positions[v]);
       for (const Influence& other : own) {
         if (other.joint == most->joint) continue;
@@ -55,34 +56,40 @@ StatusOr<JointTable> JointsOf(const FamilyMeter& meter) {
       if (influences.Of(v).size() == 0) return Unsupported("has vertices that no joint moves");
     }
   }
-  if (found.size() > kMostJoints) return Unsupported("is moved by " + std::to_string(found.size()) + " joints, a stream has room for " + std::to_string(kMostJoints));
+  if (found.size() > kMostJoints)
+    return Unsupported("is moved by " + std::to_string(found.size()) + " joints, a stream has room for " +
+                       std::to_string(kMostJoints));
   return JointTable(found.begin(), found.end());
 }
 
 }  // namespace
 
 StatusOr<WeightedFamily> ToWeightedFamily(const FamilyMeter& meter) {
-  // Weights that hardly matter, and those of a single joint, are coded nevertheless: steps of the base are no finer than this.
+  // Weights that hardly matter, and those of a single joint, are coded nevertheless: steps of the base are no finer
+  // than this.
   constexpr double kCoarsest = 1.0 / 16;
   WeightedFamily family;
   LACERTA_ASSIGN_OR_RETURN(family.joints, JointsOf(meter));
   LACERTA_ASSIGN_OR_RETURN(const double reach, ReachOf(meter));
   family.reach = std::max(reach, meter.error() / kCoarsest);
-  LACERTA_ASSIGN_OR_RETURN(family.original, ToAttributedMesh(meter.primitives(), meter.texels_per_unit(), OtherAttributes::kLeaveOut, meter.skin(),
-                                                             meter.custom(), family.joints));
+  LACERTA_ASSIGN_OR_RETURN(family.original,
+                           ToAttributedMesh(meter.primitives(), meter.texels_per_unit(), OtherAttributes::kLeaveOut,
+                                            meter.skin(), meter.custom(), family.joints));
   family.targets = meter.targets();
   family.targets.attributes.clear();
   family.targets.everywhere.clear();
   for (size_t a = 0; a < family.original.attributes.size(); ++a) {
     const std::optional<size_t> known = meter.IndexOf(family.original.attributes[a].name);
     if (!known.has_value()) family.weights = a;
-    family.targets.attributes.push_back(known.has_value() ? meter.targets().attributes[*known] : meter.error() / family.reach);
+    family.targets.attributes.push_back(known.has_value() ? meter.targets().attributes[*known]
+                                                          : meter.error() / family.reach);
   }
   CloseUnseenSeams(family.targets.attributes, meter.meter().texture_size(), &family.original);
   return family;
 }
 
-Status MeasureInPoses(const FamilyMeter& meter, const WeightedFamily& family, const AttributedMesh& mesh, uint64_t num_samples, SurfaceErrors* errors) {
+Status MeasureInPoses(const FamilyMeter& meter, const WeightedFamily& family, const AttributedMesh& mesh,
+                      uint64_t num_samples, SurfaceErrors* errors) {
   constexpr uint64_t kShare = 4, kFewest = 3000;  // of the samples, in each pose
   const MeshAttribute& weights = mesh.attributes[family.weights];
   // Vertices where weights have seams are several.
@@ -109,7 +116,8 @@ Status MeasureInPoses(const FamilyMeter& meter, const WeightedFamily& family, co
   const auto posed = [&](size_t pose) -> StatusOr<TriangleMesh> {
     TriangleMesh moved = surface;
     for (size_t v = 0; v < moved.positions.size(); ++v) {
-      moved.positions[v] = Vec3Cast<float>(meter.skin()->Posed(pose, Vec3Cast<double>(surface.positions[v]), influences[v]));
+      moved.positions[v] =
+          Vec3Cast<float>(meter.skin()->Posed(pose, Vec3Cast<double>(surface.positions[v]), influences[v]));
     }
     return moved;
   };
@@ -119,7 +127,8 @@ Status MeasureInPoses(const FamilyMeter& meter, const WeightedFamily& family, co
   return Status();
 }
 
-std::vector<float> FactorsInPoses(const FamilyMeter& meter, const WeightedFamily& family, const AttributedSemiRegularMesh& levels, size_t attribute) {
+std::vector<float> FactorsInPoses(const FamilyMeter& meter, const WeightedFamily& family,
+                                  const AttributedSemiRegularMesh& levels, size_t attribute) {
   if (attribute != family.weights) return {};
   const AttributedMesh mesh = FinestLevel(levels);
   const MeshAttribute& weights = mesh.attributes[attribute];
@@ -150,7 +159,8 @@ std::vector<float> FactorsInPoses(const FamilyMeter& meter, const WeightedFamily
         }
       }
       for (size_t c = 0; c < squares.size(); ++c) {
-        factors[size_t{row} * weights.components + c] = static_cast<float>(std::min(1.0, std::sqrt(squares[c]) / family.reach));
+        factors[size_t{row} * weights.components + c] =
+            static_cast<float>(std::min(1.0, std::sqrt(squares[c]) / family.reach));
       }
     }
   }

@@ -22,17 +22,19 @@ struct WeightedFamily {
   double reach = 0;         // mesh units that a surface in its worst pose is off where weights are off by 1, about
 };
 
-// meter: OK and with a skin, to which the result refers no more. Fails with kUnsupported where more joints move the family than a stream has
-// room for.
+// meter: OK and with a skin, to which the result refers no more. Fails with kUnsupported where more joints move the
+// family than a stream has room for.
 StatusOr<WeightedFamily> ToWeightedFamily(const FamilyMeter& meter);
 
-// Sets the error of weights to the farthest that a surface with attributes like those of `family` is from the original in a pose, in units of reach.
-// Weights are those that a reader makes of the components (LargestFour).
-Status MeasureInPoses(const FamilyMeter& meter, const WeightedFamily& family, const AttributedMesh& mesh, uint64_t num_samples, SurfaceErrors* errors);
+// Sets the error of weights to the farthest that a surface with attributes like those of `family` is from the original
+// in a pose, in units of reach. Weights are those that a reader makes of the components (LargestFour).
+Status MeasureInPoses(const FamilyMeter& meter, const WeightedFamily& family, const AttributedMesh& mesh,
+                      uint64_t num_samples, SurfaceErrors* errors);
 
-// How far the worst pose moves a vertex for each of its weights, in units of reach and at most 1: of the values of the attribute `weights` at all
-// levels, which are #values x #joints; empty for other attributes.
-std::vector<float> FactorsInPoses(const FamilyMeter& meter, const WeightedFamily& family, const AttributedSemiRegularMesh& mesh, size_t attribute);
+// How far the worst pose moves a vertex for each of its weights, in units of reach and at most 1: of the values of the
+// attribute `weights` at all levels, which are #values x #joints; empty for other attributes.
+std::vector<float> FactorsInPoses(const FamilyMeter& meter, const WeightedFamily& family,
+                                  const AttributedSemiRegularMesh& mesh, size_t attribute);
 
 }  // namespace lacerta
 

@@ -40,7 +40,8 @@ StatusOr<std::vector<VertexSoup>> DecodeBases(const std::vector<Span<const uint8
                                               const ProgressiveStream& announced, const DecodeLimits& limits) {
   std::vector<VertexSoup> bases;
   for (const Span<const uint8_t> part : parts) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup base, DecodeAttributedGroup(part, announced.attributes, limits, announced.joints));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup base,
+                             DecodeAttributedGroup(part, announced.attributes, limits, announced.joints));
     bases.push_back(std::move(base));
   }
   return bases;
@@ -76,7 +77,8 @@ StatusOr<AttributedLevel> DecodeAttributedLevel(const GatheredStream& stream, co
   LACERTA_RETURN_IF_ERROR(CheckAttributes(announced, info));
   std::vector<VertexSoup> bases;
   for (const Span<const uint8_t> part : BaseParts(stream, announced)) {
-    LACERTA_ASSIGN_OR_RETURN(VertexSoup base, DecodeAttributedGroup(part, info.attributes, options.limits, announced.joints));
+    LACERTA_ASSIGN_OR_RETURN(VertexSoup base,
+                             DecodeAttributedGroup(part, info.attributes, options.limits, announced.joints));
     bases.push_back(std::move(base));
   }
   LACERTA_ASSIGN_OR_RETURN(const AttributedBase base, AttributedBaseFromSoups(bases, info.base_step, info.attributes));

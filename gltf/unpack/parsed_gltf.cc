@@ -32,7 +32,8 @@ RefinedGeometry ToArrays(ProgressiveSurface surface) {
     if (attribute.name == "NORMAL" && attribute.components == 3) {
       geometry.normals = std::move(values.bytes);
     } else {
-      geometry.attributes.push_back({std::move(attribute.name), attribute.components, std::move(values.bytes), static_cast<uint32_t>(values.type)});
+      geometry.attributes.push_back({std::move(attribute.name), attribute.components, std::move(values.bytes),
+                                     static_cast<uint32_t>(values.type)});
     }
   }
   AccessorData indices = MakeIndexAccessor(mesh.triangles, mesh.positions.size());

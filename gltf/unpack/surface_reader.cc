@@ -194,7 +194,8 @@ StatusOr<ProgressiveSurface> ReadSurface(const GltfDocument& document, const Sta
 AccessorData ToAccessor(const VertexSoup::Attribute& attribute) {
   AccessorData data = MakeFloatAccessor(attribute.values, attribute.components);
   if (attribute.name != kJointsName) return data;
-  const bool is_short = std::any_of(attribute.values.begin(), attribute.values.end(), [](float joint) { return joint > std::numeric_limits<uint8_t>::max(); });
+  const bool is_short = std::any_of(attribute.values.begin(), attribute.values.end(),
+                                    [](float joint) { return joint > std::numeric_limits<uint8_t>::max(); });
   data.type = is_short ? ComponentType::kUint16 : ComponentType::kUint8;
   data.bytes.clear();
   for (const float joint : attribute.values) {

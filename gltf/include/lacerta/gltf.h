@@ -127,8 +127,8 @@ struct ProgressiveSurface {
   uint64_t mesh = 0;
   uint64_t primitive = 0;
   TriangleMesh surface;
-  // Of streams that carry attributes: one value per vertex of `surface`, which has a vertex for each side of a seam. WEIGHTS_0 of skins has
-  // the sum 1, and JOINTS_0 whole numbers.
+  // Of streams that carry attributes: one value per vertex of `surface`, which has a vertex for each side of a seam.
+  // WEIGHTS_0 of skins has the sum 1, and JOINTS_0 whole numbers.
   std::vector<VertexSoup::Attribute> attributes;
   bool smooth_normals = false;  // the asset wants normals derived from the surface; else flat shading
   int level = 0;                // of `surface`

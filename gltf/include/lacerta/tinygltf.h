@@ -222,8 +222,8 @@ inline void ShowGeometry(const RefinedGeometry& geometry, tinygltf::Model* model
   for (const RefinedAttribute& attribute : geometry.attributes) {
     // tinygltf's TINYGLTF_TYPE_VEC2 to VEC4 are the numbers of components.
     const int type = attribute.components == 1 ? TINYGLTF_TYPE_SCALAR : static_cast<int>(attribute.components);
-    attributes[attribute.name] = AddAccessor(attribute.values, static_cast<int>(attribute.component_type), type, geometry.num_vertices,
-                                             TINYGLTF_TARGET_ARRAY_BUFFER, model);
+    attributes[attribute.name] = AddAccessor(attribute.values, static_cast<int>(attribute.component_type), type,
+                                             geometry.num_vertices, TINYGLTF_TARGET_ARRAY_BUFFER, model);
   }
   const int indices = AddAccessor(geometry.indices, static_cast<int>(geometry.index_type), TINYGLTF_TYPE_SCALAR,
                                   geometry.num_indices, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, model);

@@ -75,10 +75,11 @@ typedef struct lacerta_decoder_options {
    * which takes longer for Draco bases that arrive in small pieces. */
   uint64_t base_size;
   const lacerta_allocator* allocator; /* NULL: malloc and free. Copied; only its `user` has to live on. */
-  /* Of a stream with attributes and groups, which only glTF tells ("baseLengths" and "attributes" of LACERTA_mesh_progressive): the bytes of
-   * each group's Draco stream, which together are the base section, and the names of the attributes, at most 32. Copied. NULL and 0 else.
-   * Of a skinned surface ("joints" there) WEIGHTS_0 has a component for each joint, here as in what is read; hosts make those of the base's JOINTS_0 and
-   * WEIGHTS_0 and set the groups themselves (lacerta_decoder_set_base_group), even where the library has Draco. */
+  /* Of a stream with attributes and groups, which only glTF tells ("baseLengths" and "attributes" of
+   * LACERTA_mesh_progressive): the bytes of each group's Draco stream, which together are the base section, and the
+   * names of the attributes, at most 32. Copied. NULL and 0 else. Of a skinned surface ("joints" there) WEIGHTS_0 has a
+   * component for each joint, here as in what is read; hosts make those of the base's JOINTS_0 and WEIGHTS_0 and set
+   * the groups themselves (lacerta_decoder_set_base_group), even where the library has Draco. */
   const uint64_t* base_lengths;
   uint32_t num_groups;
   uint32_t num_attributes;

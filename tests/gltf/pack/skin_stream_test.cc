@@ -1,4 +1,5 @@
-// Skinned surfaces as progressive streams: smaller than simplified ones, within the error in poses, legal at every level.
+// Skinned surfaces as progressive streams: smaller than simplified ones, within the error in poses, legal at every
+// level.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,14 +17,17 @@ using testing::PosedAt;
 
 // Bumps along the arm, no two alike, and no normals.
 Bytes BumpyArm(bool halved) {
-  shapes::SkinnedSoup arm = shapes::SkinnedCylinder(128, 160);
+  shapes::SkinnedSoup arm = shapes::SkinnedCylinder(96, 112);
   for (Vec3f& p : arm.soup.positions) {
     const float angle = std::atan2(p.y, p.x);
-    const float scale = 1 + 0.1f * std::sin(p.z) + 0.03f * std::sin(5 * angle + 2 * p.z) + 0.02f * std::sin(9 * angle - 7 * p.z);
+    const float scale =
+        1 + 0.1f * std::sin(p.z) + 0.03f * std::sin(5 * angle + 2 * p.z) + 0.02f * std::sin(9 * angle - 7 * p.z);
     p = {p.x * scale, p.y * scale, p.z};
   }
   std::vector<VertexSoup::Attribute>& attributes = arm.soup.attributes;
-  attributes.erase(std::remove_if(attributes.begin(), attributes.end(), [](const VertexSoup::Attribute& a) { return a.name == "NORMAL"; }), attributes.end());
+  attributes.erase(std::remove_if(attributes.begin(), attributes.end(),
+                                  [](const VertexSoup::Attribute& a) { return a.name == "NORMAL"; }),
+                   attributes.end());
   return testing::SkinnedCylinderAsset(arm, 60.0, halved);
 }
 
@@ -64,7 +68,8 @@ TriangleMesh BothHalves(const Bytes& plain, size_t animation, double time) {
 }
 
 TEST(SkinStream, TakesLessThanHalfOfWhatSimplifiedDoes) {
-  for (const PrimitiveReport& primitive : Packed().report.primitives) EXPECT_EQ(primitive.storage, PrimitiveStorage::kProgressive) << primitive.reason;
+  for (const PrimitiveReport& primitive : Packed().report.primitives)
+    EXPECT_EQ(primitive.storage, PrimitiveStorage::kProgressive) << primitive.reason;
   const uint64_t bytes = BytesOf(Packed()), simplified = BytesOf(Pack(Arm(), LevelChoice::kNever));
   EXPECT_LT(2 * bytes, simplified) << bytes << " / " << simplified;
   EXPECT_GT(8 * bytes, simplified) << bytes << " / " << simplified;
@@ -93,7 +98,8 @@ TEST(SkinStream, NoLevelCracksInPoses) {
       for (uint64_t half = 0; half < 2; ++half) {
         for (const Vec3f& p : PosedAt(plain, 0, time, half).positions) points[half].insert({p.x, p.y, p.z});
       }
-      return static_cast<size_t>(std::count_if(points[0].begin(), points[0].end(), [&](const auto& p) { return points[1].count(p) > 0; }));
+      return static_cast<size_t>(
+          std::count_if(points[0].begin(), points[0].end(), [&](const auto& p) { return points[1].count(p) > 0; }));
     };
     EXPECT_EQ(num_shared(0.0), num_shared(0.7));
     EXPECT_GT(num_shared(0.7), before);
@@ -117,7 +123,8 @@ void ExpectLegalWeights(const Primitive& primitive) {
 }
 
 TEST(SkinStream, EveryLevelAndTheFallbackAreLegal) {
-  for (const Bytes& glb : {Packed().glb, Unpacked(0), Unpacked(1), Unpacked()}) {  // the first as readers without the extension see it
+  for (const Bytes& glb :
+       {Packed().glb, Unpacked(0), Unpacked(1), Unpacked()}) {  // the first as readers without the extension see it
     const GltfDocument document = ParseGltf(glb, "").value();
     for (uint64_t half = 0; half < 2; ++half) {
       ExpectLegalWeights(ReadPrimitive(document, PrimitiveAt(document, {0, half}), {}).value());
@@ -134,7 +141,8 @@ TEST(SkinStream, LoadersGetJointsAsIntegers) {
   ASSERT_EQ(geometries.size(), 2u);
   for (const RefinedAttribute& attribute : geometries[0].attributes) {
     EXPECT_EQ(attribute.component_type, attribute.name == "JOINTS_0" ? 5121u : 5126u) << attribute.name;
-    EXPECT_EQ(attribute.values.size(), attribute.components * geometries[0].num_vertices * (attribute.name == "JOINTS_0" ? 1 : sizeof(float)));
+    EXPECT_EQ(attribute.values.size(),
+              attribute.components * geometries[0].num_vertices * (attribute.name == "JOINTS_0" ? 1 : sizeof(float)));
   }
 }
 
@@ -143,8 +151,10 @@ TEST(SkinStream, AnotherTableOfJointsIsNoticed) {
     GltfDocument document = ParseGltf(Packed().glb, "").value();
     Json& stream = document.json["extensions"]["LACERTA_mesh_progressive"]["streams"][0u];
     EXPECT_EQ(stream["joints"], Json::array({0, 1, 2}));
-    if (joints.is_null()) stream.erase("joints");
-    else stream["joints"] = joints;
+    if (joints.is_null())
+      stream.erase("joints");
+    else
+      stream["joints"] = joints;
     const std::vector<ProgressiveSurface> surfaces = ReadProgressive(FormatGlb(document), {}).value();
     EXPECT_TRUE(surfaces[0].from_fallback);
     EXPECT_FALSE(surfaces[0].surface.triangles.empty());
