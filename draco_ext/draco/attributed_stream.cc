@@ -21,11 +21,10 @@
 #include "encoder/step_law.h"
 #include "encoder/stream_writer.h"
 #include "encoder/surface_target.h"
+#include "geometry/value_difference.h"
 
 namespace lacerta {
 namespace {
-
-constexpr double kDegreesPerRadian = 57.29577951308232;
 
 // Of the base, for an error over the surface: base values are few, and what they are off spreads over many finer ones.
 AttributeLattice PrecisionFor(const LevelAttribute& a, double error, bool is_four) {

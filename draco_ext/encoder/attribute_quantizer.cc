@@ -10,11 +10,10 @@
 #include "common/coefficient_sets.h"
 #include "encoder/bit_cost.h"
 #include "encoder/quantizer.h"
+#include "geometry/value_difference.h"
 
 namespace lacerta {
 namespace {
-
-constexpr double kDegreesPerRadian = 57.29577951308232;
 
 Vec3f VectorAt(const std::vector<float>& rows, size_t i, uint32_t components) {
   return {rows[i * components], rows[i * components + 1], rows[i * components + 2]};

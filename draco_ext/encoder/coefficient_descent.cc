@@ -233,9 +233,7 @@ void DropIdleSets(const SurfaceTarget& target, double lambda, CodedSurface* code
 QuantizedLevel QuantizeLevel(const SurfaceTarget& target, int level, const std::vector<Vec3f>& positions, const std::vector<Vec3f>& predicted,
                              const LevelSteps& step) {
   const Topology& coarse = target.topologies[level - 1];
-  QuantizedLevel quantized;
-  quantized.normal.resize(coarse.num_edges());
-  quantized.tangential.resize(size_t{2} * coarse.num_edges());
+  QuantizedLevel quantized = ZeroLevel(coarse.num_edges());
   if (step.is_silent()) return quantized;
   const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
   const std::vector<Vec3f> offsets = LevelOffsets(coarse, step.is_curved, positions, predicted);

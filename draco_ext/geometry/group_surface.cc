@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/surface_sampler.h"
+#include "geometry/vertex_area_vectors.h"
 
 namespace lacerta {
 namespace {
@@ -71,9 +72,7 @@ bool GroupSurface::HasArea(uint32_t group) const {
 }
 
 Vec3d GroupSurface::NormalOf(uint32_t face) const {
-  const Triangle& t = mesh_.surface.triangles[face];
-  const Vec3d a = Vec3Cast<double>(mesh_.surface.positions[t[0]]);
-  return Normalized(Cross(Vec3Cast<double>(mesh_.surface.positions[t[1]]) - a, Vec3Cast<double>(mesh_.surface.positions[t[2]]) - a));
+  return Normalized(AreaVector(mesh_.surface.positions, mesh_.surface.triangles[face]));
 }
 
 bool GroupSurface::PointsNear(uint32_t group, const Vec3f& p, const Vec3d& normal, double beyond, uint32_t* hint,

@@ -8,8 +8,9 @@
 
 namespace lacerta {
 
+inline constexpr double kDegreesPerRadian = 57.29577951308232;
+
 inline double DegreesBetween(const Vec3d& a, const Vec3d& b) {
-  constexpr double kDegreesPerRadian = 57.29577951308232;
   const double norm_a = Norm(a), norm_b = Norm(b);
   if (norm_a == 0 && norm_b == 0) return 0;
   if (norm_a == 0 || norm_b == 0) return 90;  // a vector without direction is as far from all

@@ -23,11 +23,7 @@ std::vector<VertexFreedom> FreedomOf(const AttributedMesh& mesh) {
 
 // facing: the sum of the normals at its corners, as an attribute; zero where there is none.
 bool IsTurnedOver(const Triangle& t, const Vec3d& facing, const std::vector<Vec3f>& before, const std::vector<Vec3f>& after) {
-  const auto normal = [&](const std::vector<Vec3f>& p) {
-    const Vec3d a = Vec3Cast<double>(p[t[0]]);
-    return Cross(Vec3Cast<double>(p[t[1]]) - a, Vec3Cast<double>(p[t[2]]) - a);
-  };
-  const Vec3d old_normal = normal(before), new_normal = normal(after);
+  const Vec3d old_normal = AreaVector(before, t), new_normal = AreaVector(after, t);
   if (Dot(new_normal, facing) < 0 && Dot(old_normal, facing) >= 0) return true;
   return Dot(old_normal, new_normal) < 0.2 * Norm(old_normal) * Norm(new_normal);
 }

@@ -25,9 +25,7 @@ struct Residual {
 };
 
 Vec3d FaceNormal(const TriangleMesh& mesh, uint32_t face) {
-  const Triangle& t = mesh.triangles[face];
-  const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
-  return Normalized(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a));
+  return Normalized(AreaVector(mesh.positions, mesh.triangles[face]));
 }
 
 // Along the way from `to` to `from`, or the face's normal where there is none.

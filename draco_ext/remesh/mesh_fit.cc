@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/vertex_area_vectors.h"
+
 namespace lacerta {
 namespace {
 
@@ -92,11 +94,6 @@ class RoundSystem {
   std::vector<double> flap_weights_;
 };
 
-Vec3d Normal(const std::vector<Vec3f>& positions, const Triangle& t) {
-  const Vec3d a = Vec3Cast<double>(positions[t[0]]);
-  return Cross(Vec3Cast<double>(positions[t[1]]) - a, Vec3Cast<double>(positions[t[2]]) - a);
-}
-
 // Puts back the vertices of triangles that turned over, until none has.
 void UndoFlips(const std::vector<Vec3f>& before, TriangleMesh* mesh) {
   constexpr int kMostPasses = 10;
@@ -104,7 +101,7 @@ void UndoFlips(const std::vector<Vec3f>& before, TriangleMesh* mesh) {
   for (int pass = 0; pass < kMostPasses && changed; ++pass) {
     changed = false;
     for (const Triangle& t : mesh->triangles) {
-      const Vec3d old_normal = Normal(before, t), new_normal = Normal(mesh->positions, t);
+      const Vec3d old_normal = AreaVector(before, t), new_normal = AreaVector(mesh->positions, t);
       if (Dot(old_normal, new_normal) >= 0.3 * Norm(old_normal) * Norm(new_normal)) continue;
       for (const uint32_t v : t) {
         changed = changed || mesh->positions[v] != before[v];

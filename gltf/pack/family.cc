@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "document/scene_poses.h"
+#include "geometry/vertex_area_vectors.h"
 #include "lacerta/surface_distance.h"
 #include "pack/find_skin.h"
 
@@ -103,10 +104,7 @@ struct Box {
 
 double AreaOf(const TriangleMesh& mesh) {
   double twice = 0.0;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
-    twice += Norm(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a));
-  }
+  for (const Triangle& t : mesh.triangles) twice += Norm(AreaVector(mesh.positions, t));
   return twice / 2;
 }
 

@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/value_difference.h"
+
 namespace lacerta {
 namespace {
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 using Value = std::array<double, 4>;
 
@@ -184,7 +184,7 @@ double RoundingForecast::RmsOf(const RoundedAttribute& attribute, std::vector<st
     covered += share;
   }
   const double rms = std::sqrt(sum / kept);
-  return attribute.direction ? 2.0 * std::asin(std::min(rms / 2.0, 1.0)) * kDegrees : rms * attribute.scale;
+  return attribute.direction ? 2.0 * std::asin(std::min(rms / 2.0, 1.0)) * kDegreesPerRadian : rms * attribute.scale;
 }
 
 }  // namespace lacerta
