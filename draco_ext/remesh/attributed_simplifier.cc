@@ -31,7 +31,8 @@ AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const We
       version_(start.num_vertices(), 0),
       mark_(start.num_vertices(), 0),
       valence_(start.num_vertices(), 0),
-      num_alive_(static_cast<uint32_t>(triangles_.size())) {
+      num_alive_(static_cast<uint32_t>(triangles_.size())),
+      queue_(num_alive_) {
   const BoundingBox box = BoundsOf(start.mesh.positions);
   const Vec3d low = Vec3Cast<double>(box.low), high = Vec3Cast<double>(box.high);
   center_ = (low + high) * 0.5;
@@ -95,7 +96,7 @@ void AttributedSimplifier::Push(uint32_t u, uint32_t v) {
   if (!MayCollapse(u, v)) return;
   GatherNodes(u, v);
   SumNodes();
-  heap_.push({static_cast<float>(Place(u, v).cost), u, v, version_[u] + version_[v]});
+  queue_.Push({static_cast<float>(Place(u, v).cost), u, v, version_[u] + version_[v]});
 }
 
 void AttributedSimplifier::PushAround(uint32_t v) {
@@ -235,31 +236,14 @@ void AttributedSimplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d
   PushAround(kept);
 }
 
-// What was not possible may be after changes nearby.
-void AttributedSimplifier::RetryBlocked() {
-  for (const Candidate& candidate : blocked_) {
-    if (!IsVoid(candidate)) heap_.push(candidate);
-  }
-  blocked_.clear();
-}
-
 void AttributedSimplifier::Run() {
   AddQuadrics();
   AddCurveQuadrics();
   PushAll();
-  uint32_t alive_at_retry = num_alive_;
-  while (true) {
-    if (heap_.empty()) {
-      if (alive_at_retry == num_alive_) break;
-      alive_at_retry = num_alive_;
-      RetryBlocked();
-      continue;
-    }
-    const Candidate candidate = heap_.top();
-    heap_.pop();
-    if (IsVoid(candidate)) continue;
-    const bool u_is_freer = freedom_[candidate.u] < freedom_[candidate.v];
-    const uint32_t kept = u_is_freer ? candidate.v : candidate.u, removed = u_is_freer ? candidate.u : candidate.v;
+  const auto is_void = [this](const Candidate& c) { return IsVoid(c); };
+  while (const std::optional<Candidate> candidate = queue_.Next(num_alive_, is_void)) {
+    const bool u_is_freer = freedom_[candidate->u] < freedom_[candidate->v];
+    const uint32_t kept = u_is_freer ? candidate->v : candidate->u, removed = u_is_freer ? candidate->u : candidate->v;
     if (!MayCollapse(kept, removed)) continue;
     rings_.Collect(kept, dead_, &corners_u_);
     rings_.Collect(removed, dead_, &corners_v_);
@@ -271,15 +255,10 @@ void AttributedSimplifier::Run() {
         AnyTurnsOver(removed, kept, corners_v_, position) || AnyTextureTurnsOver(removed, corners_u_) ||
         AnyTextureTurnsOver(kept, corners_v_) || AnyTurnsFromNormals(kept, removed, corners_u_, position) ||
         AnyTurnsFromNormals(removed, kept, corners_v_, position)) {
-      blocked_.push_back(candidate);
+      queue_.Block(*candidate);
       continue;
     }
     Collapse(kept, removed, position);
-    constexpr double kRetryShare = 0.9;
-    if (num_alive_ < kRetryShare * alive_at_retry) {
-      alive_at_retry = num_alive_;
-      RetryBlocked();
-    }
   }
 }
 

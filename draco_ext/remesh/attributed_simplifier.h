@@ -4,11 +4,11 @@
 
 #include <array>
 #include <cstdint>
-#include <queue>
 #include <vector>
 
 #include "remesh/attribute_quadrics.h"
 #include "remesh/attributed_simplify.h"
+#include "remesh/collapse_queue.h"
 #include "remesh/corner_rings.h"
 #include "remesh/placement.h"
 
@@ -54,7 +54,6 @@ class AttributedSimplifier {
   void PushAll();
   void Push(uint32_t u, uint32_t v);
   void PushAround(uint32_t v);
-  void RetryBlocked();
 
   bool MayCollapse(uint32_t u, uint32_t v);
   bool IsCurve(uint32_t u, uint32_t v, const std::vector<uint32_t>& corners_u) const;
@@ -96,8 +95,7 @@ class AttributedSimplifier {
   uint32_t last_mark_ = 0;
   uint32_t num_alive_ = 0;
   double edge_weight_ = 0;
-  std::priority_queue<Candidate> heap_;
-  std::vector<Candidate> blocked_;
+  CollapseQueue<Candidate> queue_;
 
   // Of the edge that is looked at.
   std::vector<uint32_t> corners_u_, corners_v_, around_;

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <queue>
 
 #include "geometry/bounding_box.h"
+#include "remesh/collapse_queue.h"
 #include "remesh/corner_rings.h"
 #include "remesh/placement.h"
 #include "remesh/quadric.h"
@@ -57,7 +57,6 @@ class Simplifier {
   void Kill(uint32_t triangle);
   bool AnyTurnsOver(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around) const;
   void Collapse(uint32_t kept, uint32_t removed, const Vec3d& position, const std::vector<uint32_t>& around_removed, bool pinched);
-  void RetryBlocked();
   uint32_t NextMark();
 
   SimplificationSequence* const sequence_;
@@ -74,8 +73,7 @@ class Simplifier {
   uint32_t last_mark_ = 0;
   uint32_t num_alive_ = 0;
   double edge_weight_ = 0;
-  std::priority_queue<EdgeCandidate> heap_;
-  std::vector<EdgeCandidate> blocked_;
+  CollapseQueue<EdgeCandidate> queue_;
 };
 
 Simplifier::Simplifier(const TriangleMesh& mesh, SimplificationSequence* sequence)
@@ -88,7 +86,8 @@ Simplifier::Simplifier(const TriangleMesh& mesh, SimplificationSequence* sequenc
       mark_(mesh.positions.size(), 0),
       valence_(mesh.positions.size(), 0),
       on_border_(mesh.positions.size(), 0),
-      num_alive_(static_cast<uint32_t>(mesh.triangles.size())) {
+      num_alive_(static_cast<uint32_t>(mesh.triangles.size())),
+      queue_(num_alive_) {
   const BoundingBox box = BoundsOf(mesh.positions);
   const Vec3d low = Vec3Cast<double>(box.low), high = Vec3Cast<double>(box.high);
   const double diagonal = Norm(high - low);
@@ -155,7 +154,7 @@ Placement Simplifier::Place(uint32_t u, uint32_t v) const {
 
 void Simplifier::Push(uint32_t u, uint32_t v) {
   if (u > v) std::swap(u, v);
-  heap_.push({static_cast<float>(Place(u, v).cost), u, v, version_[u] + version_[v], false});
+  queue_.Push({static_cast<float>(Place(u, v).cost), u, v, version_[u] + version_[v], false});
 }
 
 uint32_t Simplifier::NextMark() { return ++last_mark_; }
@@ -274,49 +273,30 @@ void Simplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position
   PushAround(kept);
 }
 
-// What was not possible may be after changes nearby.
-void Simplifier::RetryBlocked() {
-  for (const EdgeCandidate& edge : blocked_) {
-    if (edge.version == version_[edge.u] + version_[edge.v] && !rings_.is_empty(edge.u) && !rings_.is_empty(edge.v)) heap_.push(edge);
-  }
-  blocked_.clear();
-}
-
 void Simplifier::Run() {
   AddQuadrics();
   ClassifyEdges();
-  uint32_t alive_at_retry = num_alive_;
-  while (true) {
-    if (heap_.empty()) {
-      if (alive_at_retry == num_alive_) break;
-      alive_at_retry = num_alive_;
-      RetryBlocked();
-      continue;
-    }
-    const EdgeCandidate edge = heap_.top();
-    heap_.pop();
-    if (edge.version != version_[edge.u] + version_[edge.v] || rings_.is_empty(edge.u) || rings_.is_empty(edge.v)) continue;
+  const auto is_void = [this](const EdgeCandidate& e) {
+    return e.version != version_[e.u] + version_[e.v] || rings_.is_empty(e.u) || rings_.is_empty(e.v);
+  };
+  while (const std::optional<EdgeCandidate> next = queue_.Next(num_alive_, is_void)) {
+    const EdgeCandidate& edge = *next;
     if (valence_[edge.u] + valence_[edge.v] > kMaxRing) {
-      blocked_.push_back(edge);
+      queue_.Block(edge);
       continue;
     }
     const std::vector<uint32_t> around_u = TrianglesOf(edge.u), around_v = TrianglesOf(edge.v);
     const Placement placement = Place(edge.u, edge.v);
     const Effect effect = EffectOf(edge.u, edge.v, around_u, around_v);
     if (effect == Effect::kPinches && !edge.may_pinch) {
-      heap_.push({kPinchPenalty * edge.cost, edge.u, edge.v, edge.version, true});
+      queue_.Push({kPinchPenalty * edge.cost, edge.u, edge.v, edge.version, true});
       continue;
     }
     if (effect == Effect::kForbidden || AnyTurnsOver(edge.u, edge.v, placement.position, around_u) || AnyTurnsOver(edge.v, edge.u, placement.position, around_v)) {
-      blocked_.push_back(edge);
+      queue_.Block(edge);
       continue;
     }
     Collapse(edge.u, edge.v, placement.position, around_v, effect == Effect::kPinches);
-    constexpr double kRetryShare = 0.9;
-    if (num_alive_ < kRetryShare * alive_at_retry) {
-      alive_at_retry = num_alive_;
-      RetryBlocked();
-    }
   }
 }
 
