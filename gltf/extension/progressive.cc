@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <queue>
 #include <set>
 #include <string>
 #include <utility>
@@ -274,47 +275,45 @@ StatusOr<GatheredStream> GatherStream(const GltfDocument& document, const Progre
   return gathered;
 }
 
+namespace {
+
+// Parts in a row of a stream: one that lowers the error little may be on the way to one that lowers it a lot.
+struct Run {
+  uint64_t stream = 0;
+  size_t begin = 0, end = 0;
+  double gain = -std::numeric_limits<double>::infinity();  // per byte
+  bool operator<(const Run& b) const { return gain != b.gain ? gain < b.gain : stream > b.stream; }  // the first of equal ones is the largest
+};
+
+Run BestRun(uint64_t stream, size_t begin, const std::vector<uint64_t>& lengths, const std::vector<double>& errors) {
+  Run best{stream, begin, begin + 1};
+  double bytes = 0.0;
+  for (size_t end = begin + 1; end <= lengths.size(); ++end) {
+    bytes += static_cast<double>(lengths[end - 1]);
+    const double gain = (errors[begin - 1] - errors[end - 1]) / std::max(bytes, 1.0);
+    if (gain > best.gain) best = {stream, begin, end, gain};
+  }
+  return best;
+}
+
+}  // namespace
+
 std::vector<Segment> OrderSegments(const std::vector<std::vector<uint64_t>>& part_lengths,
                                    const std::vector<std::vector<double>>& errors) {
-  // Parts in a row: one that lowers the error little may be on the way to one that lowers it a lot.
-  struct Run {
-    size_t end = 0;
-    double gain = -std::numeric_limits<double>::infinity();  // per byte
-  };
-  const auto next_run = [&](size_t s, size_t begin) {
-    Run best{begin + 1};
-    double bytes = 0.0;
-    for (size_t end = begin + 1; end <= part_lengths[s].size(); ++end) {
-      bytes += static_cast<double>(part_lengths[s][end - 1]);
-      const double gain = (errors[s][begin - 1] - errors[s][end - 1]) / std::max(bytes, 1.0);
-      if (gain > best.gain) best = {end, gain};
-    }
-    return best;
-  };
   std::vector<Segment> order;
-  std::vector<std::pair<double, size_t>> heap;  // the gain of the next run of a stream; the first of equal ones
-  std::vector<Run> runs;
-  std::vector<size_t> next(part_lengths.size(), 1);
-  const auto is_later = [](const std::pair<double, size_t>& a, const std::pair<double, size_t>& b) {
-    return a.first != b.first ? a.first < b.first : a.second > b.second;
+  std::priority_queue<Run> runs;  // the next one of every stream
+  const auto push = [&](uint64_t s, size_t begin) {
+    if (begin < part_lengths[s].size()) runs.push(BestRun(s, begin, part_lengths[s], errors[s]));
   };
-  const auto push = [&](size_t s) {
-    if (next[s] >= part_lengths[s].size()) return;
-    runs[s] = next_run(s, next[s]);
-    heap.emplace_back(runs[s].gain, s);
-    std::push_heap(heap.begin(), heap.end(), is_later);
-  };
-  runs.resize(part_lengths.size());
   for (size_t s = 0; s < part_lengths.size(); ++s) {
     order.push_back({s, part_lengths[s][0]});
-    push(s);
+    push(s, 1);
   }
-  while (!heap.empty()) {
-    const size_t s = heap.front().second;
-    std::pop_heap(heap.begin(), heap.end(), is_later);
-    heap.pop_back();
-    for (; next[s] < runs[s].end; ++next[s]) order.push_back({s, part_lengths[s][next[s]]});
-    push(s);
+  while (!runs.empty()) {
+    const Run run = runs.top();
+    runs.pop();
+    for (size_t part = run.begin; part < run.end; ++part) order.push_back({run.stream, part_lengths[run.stream][part]});
+    push(run.stream, run.end);
   }
   return order;
 }
