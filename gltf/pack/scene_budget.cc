@@ -87,78 +87,80 @@ std::vector<Option> Solve(const std::vector<std::vector<Option>>& parts, double 
 }
 
 // What was stored for a quality is what any other takes that it still meets.
-struct Span {
+struct QualityRange {
   size_t first = 0, last = 0;  // steps
   double bytes = 0.0;
   double error = 0.0;
 };
 
-std::vector<Span> SpansOf(const RateCurve& curve) {
-  std::vector<Span> spans;
+std::vector<QualityRange> RangesOf(const RateCurve& curve) {
+  std::vector<QualityRange> ranges;
   for (const RatePoint& point : curve.known) {
-    Span span{point.step, point.step, point.bytes, point.error};
-    while (span.last + 1 < kQualitySteps && point.error <= curve.expected[span.last + 1]) ++span.last;
-    spans.push_back(span);
+    QualityRange range{point.step, point.step, point.bytes, point.error};
+    while (range.last + 1 < kQualitySteps && point.error <= curve.expected[range.last + 1]) ++range.last;
+    ranges.push_back(range);
   }
-  std::sort(spans.begin(), spans.end(), [](const Span& a, const Span& b) { return a.first < b.first; });
-  for (size_t i = 0; i + 1 < spans.size(); ++i) spans[i].last = std::min(spans[i].last, spans[i + 1].first - 1);
-  return spans;
+  std::sort(ranges.begin(), ranges.end(), [](const QualityRange& a, const QualityRange& b) { return a.first < b.first; });
+  for (size_t i = 0; i + 1 < ranges.size(); ++i) ranges[i].last = std::min(ranges[i].last, ranges[i + 1].first - 1);
+  return ranges;
 }
 
 // The first that ends at the step or behind it.
-size_t SpanAt(const std::vector<Span>& spans, size_t step) {
+size_t RangeAt(const std::vector<QualityRange>& ranges, size_t step) {
   size_t i = 0;
-  while (i < spans.size() && spans[i].last < step) ++i;
+  while (i < ranges.size() && ranges[i].last < step) ++i;
   return i;
 }
 
-double ExpectedBytes(const std::vector<Span>& spans, size_t step) {
+// Whether the step lies in that range, of RangeAt.
+bool Holds(const std::vector<QualityRange>& ranges, size_t at, size_t step) { return at < ranges.size() && ranges[at].first <= step; }
+
+double ExpectedBytes(const std::vector<QualityRange>& ranges, size_t step) {
   constexpr double kUsual = 0.08, kLeast = 0.01, kMost = 0.3;  // ln(bytes) per dB
-  const size_t next = SpanAt(spans, step);
-  if (next < spans.size() && spans[next].first <= step) return spans[next].bytes;
+  const size_t next = RangeAt(ranges, step);
+  if (Holds(ranges, next, step)) return ranges[next].bytes;
   const auto slope = [&](size_t a, size_t b, size_t from, size_t to) {
-    return std::log(std::max(spans[b].bytes, 1.0) / std::max(spans[a].bytes, 1.0)) / (PsnrOfStep(to) - PsnrOfStep(from));
+    return std::log(std::max(ranges[b].bytes, 1.0) / std::max(ranges[a].bytes, 1.0)) / (PsnrOfStep(to) - PsnrOfStep(from));
   };
   if (next == 0) {
-    const double per_decibel = spans.size() > 1 ? std::clamp(slope(0, 1, spans[0].first, spans[1].first), kLeast, kMost) : kUsual;
-    return spans[0].bytes * std::exp(per_decibel * (PsnrOfStep(step) - PsnrOfStep(spans[0].first)));
+    const double per_decibel = ranges.size() > 1 ? std::clamp(slope(0, 1, ranges[0].first, ranges[1].first), kLeast, kMost) : kUsual;
+    return ranges[0].bytes * std::exp(per_decibel * (PsnrOfStep(step) - PsnrOfStep(ranges[0].first)));
   }
-  const Span& before = spans[next - 1];
+  const QualityRange& before = ranges[next - 1];
   double per_decibel = kUsual;
-  if (next < spans.size()) {
-    per_decibel = slope(next - 1, next, before.last, spans[next].first);
+  if (next < ranges.size()) {
+    per_decibel = slope(next - 1, next, before.last, ranges[next].first);
   } else if (next > 1) {
-    per_decibel = std::clamp(slope(next - 2, next - 1, spans[next - 2].last, before.last), kLeast, kMost);
+    per_decibel = std::clamp(slope(next - 2, next - 1, ranges[next - 2].last, before.last), kLeast, kMost);
   }
   return before.bytes * std::exp(per_decibel * (PsnrOfStep(step) - PsnrOfStep(before.last)));
 }
 
-double ExpectedError(const RateCurve& curve, const std::vector<Span>& spans, size_t step) {
-  const size_t at = SpanAt(spans, step);
-  return at < spans.size() && spans[at].first <= step ? spans[at].error : curve.expected[step];
+double ExpectedError(const RateCurve& curve, const std::vector<QualityRange>& ranges, size_t step) {
+  const size_t at = RangeAt(ranges, step);
+  return Holds(ranges, at, step) ? ranges[at].error : curve.expected[step];
 }
 
 }  // namespace
 
-double ExpectedBytes(const RateCurve& curve, size_t step) { return ExpectedBytes(SpansOf(curve), step); }
+double ExpectedBytes(const RateCurve& curve, size_t step) { return ExpectedBytes(RangesOf(curve), step); }
 
-double ExpectedError(const RateCurve& curve, size_t step) { return ExpectedError(curve, SpansOf(curve), step); }
+double ExpectedError(const RateCurve& curve, size_t step) { return ExpectedError(curve, RangesOf(curve), step); }
 
 bool IsKnown(const RateCurve& curve, size_t step) {
-  const std::vector<Span> spans = SpansOf(curve);
-  const size_t at = SpanAt(spans, step);
-  return at < spans.size() && spans[at].first <= step;
+  const std::vector<QualityRange> ranges = RangesOf(curve);
+  return Holds(ranges, RangeAt(ranges, step), step);
 }
 
 std::vector<size_t> ShareBudget(const std::vector<RateCurve>& curves, double budget) {
   std::vector<std::vector<Option>> parts;
   for (const RateCurve& curve : curves) {
-    const std::vector<Span> spans = SpansOf(curve);
+    const std::vector<QualityRange> ranges = RangesOf(curve);
     std::vector<Option> options;
     // From the finest on, so that where several promise the same error for the same bytes the finest stands for them.
     for (size_t step = kQualitySteps; step-- > 0;) {
-      if (step + kFarthest < spans.front().first || step > spans.back().last + kFarthest) continue;
-      options.push_back({step, ExpectedBytes(spans, step), ExpectedError(curve, spans, step)});
+      if (step + kFarthest < ranges.front().first || step > ranges.back().last + kFarthest) continue;
+      options.push_back({step, ExpectedBytes(ranges, step), ExpectedError(curve, ranges, step)});
     }
     parts.push_back(std::move(options));
   }
