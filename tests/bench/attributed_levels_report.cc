@@ -154,29 +154,17 @@ Status Report(const NamedSurface& named, const Wanted& wanted) {
 
 int main(int argc, char** argv) {
   lacerta::Wanted wanted;
-  int failures = 0;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    if (argument == "--base" && i + 1 < argc) {
-      wanted.base = static_cast<uint32_t>(std::atoi(argv[++i]));
-    } else if (argument == "--levels" && i + 1 < argc) {
-      wanted.levels = std::atoi(argv[++i]);
-    } else if (argument == "--psnr" && i + 1 < argc) {
-      wanted.psnr = std::atof(argv[++i]);
-    } else if (argument == "--bare") {
-      wanted.is_bare = true;
-    } else if (argument == "--obj" && i + 1 < argc) {
-      wanted.obj = argv[++i];
-    } else {
-      const bool is_read = lacerta::ReportSurfaces(argument, [&](lacerta::NamedSurface surface) {
-        if (wanted.is_bare) {
-          surface.mesh.attributes.clear();
-          surface.mesh.groups.clear();
-        }
-        return lacerta::Report(surface, wanted);
-      });
-      if (!is_read) ++failures;
+  CLI::App options;
+  options.add_option("--base", wanted.base);
+  options.add_option("--levels", wanted.levels);
+  options.add_option("--psnr", wanted.psnr);
+  options.add_flag("--bare", wanted.is_bare);
+  options.add_option("--obj", wanted.obj);
+  return lacerta::ReportSurfaces(&options, argc, argv, [&](lacerta::NamedSurface surface) {
+    if (wanted.is_bare) {
+      surface.mesh.attributes.clear();
+      surface.mesh.groups.clear();
     }
-  }
-  return failures == 0 ? 0 : 1;
+    return lacerta::Report(surface, wanted);
+  });
 }

@@ -64,20 +64,11 @@ Status Report(const NamedSurface& surface, const Targets& wanted) {
 
 int main(int argc, char** argv) {
   lacerta::Targets targets;
-  int failures = 0;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    double* number = argument == "--psnr"      ? &targets.psnr
-                     : argument == "--texels"  ? &targets.texels
-                     : argument == "--degrees"     ? &targets.degrees
-                     : argument == "--all-degrees" ? &targets.all_degrees
-                     : argument == "--turned"      ? &targets.turned
-                                                   : nullptr;
-    if (number != nullptr && i + 1 < argc) {
-      *number = std::atof(argv[++i]);
-      continue;
-    }
-    if (!lacerta::ReportSurfaces(argument, [&](const auto& surface) { return lacerta::Report(surface, targets); })) ++failures;
-  }
-  return failures == 0 ? 0 : 1;
+  CLI::App options;
+  options.add_option("--psnr", targets.psnr);
+  options.add_option("--texels", targets.texels);
+  options.add_option("--degrees", targets.degrees);
+  options.add_option("--all-degrees", targets.all_degrees);
+  options.add_option("--turned", targets.turned);
+  return lacerta::ReportSurfaces(&options, argc, argv, [&](const auto& surface) { return lacerta::Report(surface, targets); });
 }

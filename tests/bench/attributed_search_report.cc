@@ -45,19 +45,11 @@ Status Report(const NamedSurface& named, const Wanted& wanted) {
 
 int main(int argc, char** argv) {
   lacerta::Wanted wanted;
-  int failures = 0;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    if (argument.rfind("--", 0) == 0 && i + 1 < argc) {
-      const double value = std::atof(argv[++i]);
-      if (argument == "--psnr") wanted.psnr = value;
-      if (argument == "--texels") wanted.texels = value;
-      if (argument == "--degrees") wanted.degrees = value;
-      if (argument == "--effort") wanted.search.effort = static_cast<lacerta::Effort>(static_cast<int>(value));
-      if (argument == "--most") wanted.search.most_bytes = static_cast<size_t>(value);
-      continue;
-    }
-    if (!lacerta::ReportSurfaces(argument, [&](const auto& surface) { return lacerta::Report(surface, wanted); })) ++failures;
-  }
-  return failures == 0 ? 0 : 1;
+  CLI::App options;
+  options.add_option("--psnr", wanted.psnr);
+  options.add_option("--texels", wanted.texels);
+  options.add_option("--degrees", wanted.degrees);
+  options.add_option("--effort", wanted.search.effort);
+  options.add_option("--most", wanted.search.most_bytes);
+  return lacerta::ReportSurfaces(&options, argc, argv, [&](const auto& surface) { return lacerta::Report(surface, wanted); });
 }

@@ -91,19 +91,11 @@ Status Report(const NamedSurface& named, const Wanted& wanted) {
 
 int main(int argc, char** argv) {
   lacerta::Wanted wanted;
-  int failures = 0;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    if (argument.rfind("--", 0) == 0 && i + 1 < argc) {
-      const double value = std::atof(argv[++i]);
-      if (argument == "--base") wanted.base = static_cast<uint32_t>(value);
-      if (argument == "--levels") wanted.levels = static_cast<int>(value);
-      if (argument == "--psnr") wanted.psnr = value;
-      if (argument == "--texels") wanted.texels = value;
-      if (argument == "--degrees") wanted.degrees = value;
-      continue;
-    }
-    if (!lacerta::ReportSurfaces(argument, [&](const auto& surface) { return lacerta::Report(surface, wanted); })) ++failures;
-  }
-  return failures == 0 ? 0 : 1;
+  CLI::App options;
+  options.add_option("--base", wanted.base);
+  options.add_option("--levels", wanted.levels);
+  options.add_option("--psnr", wanted.psnr);
+  options.add_option("--texels", wanted.texels);
+  options.add_option("--degrees", wanted.degrees);
+  return lacerta::ReportSurfaces(&options, argc, argv, [&](const auto& surface) { return lacerta::Report(surface, wanted); });
 }

@@ -59,17 +59,24 @@ StatusOr<std::vector<NamedSurface>> ReadGltfSurfaces(const std::string& path) {
   return result;
 }
 
-bool ReportSurfaces(const std::string& path, const std::function<Status(const NamedSurface&)>& report) {
-  const StatusOr<std::vector<NamedSurface>> surfaces = ReadGltfSurfaces(path);
-  if (!surfaces.ok()) {
-    std::fprintf(stderr, "%s\n", surfaces.status().message().c_str());
-    return false;
+int ReportSurfaces(CLI::App* options, int argc, char** argv, const std::function<Status(const NamedSurface&)>& report) {
+  std::vector<std::string> paths;
+  options->add_option("FILE", paths, "glTF assets")->required();
+  CLI11_PARSE(*options, argc, argv);
+  int failures = 0;
+  for (const std::string& path : paths) {
+    const StatusOr<std::vector<NamedSurface>> surfaces = ReadGltfSurfaces(path);
+    if (!surfaces.ok()) {
+      std::fprintf(stderr, "%s\n", surfaces.status().message().c_str());
+      ++failures;
+      continue;
+    }
+    for (const NamedSurface& surface : surfaces.value()) {
+      const Status status = report(surface);
+      if (!status.ok()) std::fprintf(stderr, "%s\n", status.WithContext(surface.name).message().c_str());
+    }
   }
-  for (const NamedSurface& surface : surfaces.value()) {
-    const Status status = report(surface);
-    if (!status.ok()) std::fprintf(stderr, "%s\n", status.WithContext(surface.name).message().c_str());
-  }
-  return true;
+  return failures == 0 ? 0 : 1;
 }
 
 }  // namespace lacerta

@@ -2,6 +2,7 @@
 #ifndef LACERTA_TESTS_BENCH_GLTF_SURFACES_H_
 #define LACERTA_TESTS_BENCH_GLTF_SURFACES_H_
 
+#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
@@ -23,8 +24,9 @@ struct NamedSurface {
 // One surface for each glTF mesh that has triangles; joints and weights are left out.
 StatusOr<std::vector<NamedSurface>> ReadGltfSurfaces(const std::string& path);
 
-// Calls `report` for each of them; what fails is told on standard error, by name. Returns whether the file could be read.
-bool ReportSurfaces(const std::string& path, const std::function<Status(const NamedSurface&)>& report);
+// The main function of a program that reports on the surfaces of files: parses its options and the files, and calls `report` for each
+// surface. What fails is told on standard error, by name. Returns the exit status: 0 where all files could be read.
+int ReportSurfaces(CLI::App* options, int argc, char** argv, const std::function<Status(const NamedSurface&)>& report);
 
 }  // namespace lacerta
 
