@@ -5,9 +5,7 @@ import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {drawCurves} from './curves.mjs';
 import {loadWhole, openViewer, pictures, scanAsset, texturedAsset} from './support.mjs';
-import {parseProgressive} from '../../dist/asset.js';
-import {readHead} from '../../dist/glb.js';
-import {example, root, scratch} from '../node/support.mjs';
+import {example, readAsset, root, scratch} from '../node/support.mjs';
 
 let viewer, page, asset;
 before(async () => {
@@ -206,7 +204,7 @@ test('textures come after the surfaces, onto the same materials; a file that end
 
 test('groups of a stream with attributes refine together, each with its own attributes, and no crack opens between them', async () => {
   copyFileSync(example('torus_with_attributes.glb'), join(scratch, 'groups.glb'));
-  const {triangleCounts, vertexCounts} = parseProgressive(readHead(new Uint8Array(readFileSync(example('torus_with_attributes.glb')))).json).streams[0];
+  const {triangleCounts, vertexCounts} = readAsset(example('torus_with_attributes.glb')).stream;
   for (const mode of ['stream', 'range']) {
     const history = await loadWhole(page, '/assets/groups.glb', mode);
     assert.equal(await problem(), '');

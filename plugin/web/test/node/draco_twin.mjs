@@ -1,11 +1,10 @@
 // The Draco file that stands beside a packed one: the whole input mesh in KHR_draco_mesh_compression, with the fewest bits whose rounding is no
 // larger than the error of the packed file's finest level.
-import {readFileSync, writeFileSync} from 'node:fs';
+import {writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import draco3d from 'draco3d';
-import {parseProgressive} from '../../src/asset.js';
-import {formatGlb, readHead} from '../../src/glb.js';
-import {lacerta, readPly, scratch} from './support.mjs';
+import {formatGlb} from '../../src/glb.js';
+import {lacerta, readAsset, readPly, scratch} from './support.mjs';
 
 async function encode({positions, indices}, bits) {
   const module = await draco3d.createEncoderModule();
@@ -26,11 +25,11 @@ export async function writeDracoTwin(mesh, packed) {
   lacerta('pack', mesh, '-o', plain, '--levels', '0', '--psnr', '140', '--effort', 'fast');
   lacerta('unpack', plain, '-o', ply);
   const {positions, indices} = readPly(ply);
-  const {streams} = parseProgressive(readHead(new Uint8Array(readFileSync(packed))).json);
+  const {stream} = readAsset(packed);
   const min = [0, 1, 2].map(axis => positions.reduce((least, x, i) => i % 3 === axis ? Math.min(least, x) : least, Infinity));
   const max = [0, 1, 2].map(axis => positions.reduce((most, x, i) => i % 3 === axis ? Math.max(most, x) : most, -Infinity));
   const range = Math.max(...max.map((x, axis) => x - min[axis]));
-  const bits = Math.ceil(Math.log2(1 + range / (streams[0].errors.at(-1) * Math.sqrt(12))));
+  const bits = Math.ceil(Math.log2(1 + range / (stream.errors.at(-1) * Math.sqrt(12))));
   const {bytes, id} = await encode({positions, indices}, bits);
   const draco = {KHR_draco_mesh_compression: {bufferView: 0, attributes: {POSITION: id}}};
   const json = {asset: {version: '2.0'}, scene: 0, scenes: [{nodes: [0]}], nodes: [{mesh: 0}],

@@ -6,10 +6,8 @@ import {before, test} from 'node:test';
 import {Logger, NodeIO} from '@gltf-transform/core';
 import {ALL_EXTENSIONS} from '@gltf-transform/extensions';
 import {dedup, flatten, join as joinMeshes, prune, quantize, simplify, weld} from '@gltf-transform/functions';
-import {parseProgressive} from '../../dist/asset.js';
-import {readHead} from '../../dist/glb.js';
 import {LacertaMeshProgressive, toLevel} from '../../dist/gltf_transform.js';
-import {dracoModule, lacerta, largestUlps, nativeLevel, pack, scratch, writeTorus} from './support.mjs';
+import {dracoModule, lacerta, largestUlps, nativeLevel, pack, readAsset, scratch, writeTorus} from './support.mjs';
 
 const mesh = join(scratch, 'transform_torus.obj');
 const fallbacks = {draco: [], plain: ['--fallback', 'plain'], none: ['--fallback', 'none', '--form', 'custom']};
@@ -22,18 +20,13 @@ before(async () => {
   assets = Object.fromEntries(Object.entries(fallbacks).map(([name, options]) => [name, pack(`transform_${name}.glb`, mesh, '--levels', 'always', ...options)]));
 });
 
-const streamOf = path => {
-  const bytes = new Uint8Array(readFileSync(path)), {json, binOffset} = readHead(bytes);
-  const {data} = parseProgressive(json), view = json.bufferViews[data];
-  return {json, bytes: bytes.slice(binOffset + (view.byteOffset ?? 0), binOffset + (view.byteOffset ?? 0) + view.byteLength)};
-};
-
 // The command finds the asset valid, the stream is what it was, and no fallback was taken for edited.
 function assertKept(before, after) {
-  assert.deepEqual(streamOf(after).bytes, streamOf(before).bytes);
+  const {data, stream} = readAsset(before);
+  assert.deepEqual(readAsset(after).data, data);
   const report = JSON.parse(lacerta('validate', after, '--json').toString());
   assert.deepEqual(JSON.stringify(report).match(/"(?:error|severity)":"error"/g), null, JSON.stringify(report));
-  const last = streamOf(before).json.extensions.LACERTA_mesh_progressive.streams[0].errors.length - 1;
+  const last = stream.errors.length - 1;
   assert.ok(last >= 2);
   assert.deepEqual(nativeLevel(after, last), nativeLevel(before, last));
 }
@@ -51,7 +44,7 @@ for (const name of Object.keys(fallbacks)) {
     await document.transform(dedup(), flatten(), joinMeshes(), weld(), simplify({ratio: 0.5, error: 0.01, simplifier: {ready: Promise.resolve()}}), quantize(), prune());
     await io.write(out, document);
     assertKept(assets[name], out);
-    assert.equal(streamOf(out).json.nodes[0].name, 'renamed');
+    assert.equal(readAsset(out).json.nodes[0].name, 'renamed');
   });
 }
 
@@ -74,7 +67,7 @@ test('without the extension the fallback still shows', async () => {
   for (const name of ['draco', 'plain']) {
     const document = await plainIo.read(assets[name]);
     const triangles = document.getRoot().listMeshes()[0].listPrimitives()[0].getIndices().getCount() / 3;
-    assert.equal(triangles, streamOf(assets[name]).json.extensions.LACERTA_mesh_progressive.streams[0].triangleCounts[0]);
+    assert.equal(triangles, readAsset(assets[name]).stream.triangleCounts[0]);
   }
 });
 
@@ -82,7 +75,7 @@ test('a trimmed asset stays trimmed', async () => {
   const trimmed = join(scratch, 'trimmed.glb'), out = join(scratch, 'trimmed_copy.glb');
   lacerta('trim', assets.draco, '--level', '1', '-o', trimmed);
   await io.write(out, await io.read(trimmed));
-  assert.deepEqual(streamOf(out).bytes, streamOf(trimmed).bytes);
+  assert.deepEqual(readAsset(out).data, readAsset(trimmed).data);
   const document = await io.read(out);
   await document.transform(toLevel({draco3d: await dracoModule()}));
   assert.deepEqual(document.getRoot().listMeshes()[0].listPrimitives()[0].getIndices().getArray(), nativeLevel(trimmed, 2).indices);

@@ -1,24 +1,17 @@
 // Streams with attributes and groups of faces: as native, group by group, and cut short.
 import assert from 'node:assert/strict';
-import {readFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {test} from 'node:test';
 import {Worker} from 'node:worker_threads';
 import {Logger, NodeIO} from '@gltf-transform/core';
 import {ALL_EXTENSIONS} from '@gltf-transform/extensions';
 import {baseParts, parseProgressive, progressivePrimitive} from '../../dist/asset.js';
-import {readHead} from '../../dist/glb.js';
 import {LacertaMeshProgressive, toLevel} from '../../dist/gltf_transform.js';
 import {LacertaError, createDecoder, createPool} from '../../dist/index.js';
-import {decodeDraco, dracoModule, example, lacerta, largestUlps, nativeGroups, scratch} from './support.mjs';
+import {decodeDraco, dracoModule, example, lacerta, largestUlps, nativeGroups, readAsset, scratch} from './support.mjs';
 
 const asset = example('torus_with_attributes.glb');
 
-function readAsset(path) {
-  const bytes = new Uint8Array(readFileSync(path)), {json, binOffset} = readHead(bytes), progressive = parseProgressive(json);
-  const view = json.bufferViews[progressive.data], begin = binOffset + (view.byteOffset ?? 0);
-  return {json, progressive, stream: progressive.streams[0], data: bytes.slice(begin, begin + view.byteLength)};
-}
 const {json, progressive, stream, data} = readAsset(asset);
 const finest = stream.vertexCounts.length - 1;
 const options = {baseLengths: stream.baseLengths, attributes: stream.attributes};

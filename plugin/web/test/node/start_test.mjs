@@ -41,7 +41,7 @@ test('npm start serves the viewer, its modules and its assets, whole and by rang
     assert.deepEqual(new Uint8Array(await part.arrayBuffer()), whole.subarray(100, 300));
     assert.equal((await get('assets/nowhere.glb')).status, 404);
   } finally {
-    process.kill(-server.pid, 'SIGINT');  // as Ctrl-C does: all of its group
+    if (server.exitCode === null) process.kill(-server.pid, 'SIGINT');  // as Ctrl-C does: all of its group
   }
   await ended;
   await assert.rejects(fetch(/http:\/\/localhost:\d+\//.exec(told)[0]));

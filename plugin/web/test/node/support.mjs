@@ -6,6 +6,8 @@ import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {Logger, NodeIO} from '@gltf-transform/core';
 import draco3d from 'draco3d';
+import {parseProgressive} from '../../dist/asset.js';
+import {readHead} from '../../dist/glb.js';
 
 export {decodeDraco} from './decode_draco.mjs';
 
@@ -20,6 +22,13 @@ const builds = [process.env.LACERTA_COMMAND, join(root, 'build/release/bin/lacer
 const command = builds.find(path => path && existsSync(path));
 if (!command) throw new Error('the native command is not built: cmake --preset release && cmake --build --preset release');
 export const lacerta = (...args) => execFileSync(command, args, {stdio: ['ignore', 'pipe', 'pipe'], maxBuffer: 1 << 28});
+
+/** A packed file: {json, progressive, stream: the first one, data: the bytes of all}. */
+export function readAsset(path) {
+  const bytes = new Uint8Array(readFileSync(path)), {json, binOffset} = readHead(bytes), progressive = parseProgressive(json);
+  const view = json.bufferViews[progressive.data], begin = binOffset + (view.byteOffset ?? 0);
+  return {json, progressive, stream: progressive.streams[0], data: bytes.slice(begin, begin + view.byteLength)};
+}
 
 /** The positions and indices of a level as the native command unpacks them. */
 export function nativeLevel(path, level) {
