@@ -158,4 +158,25 @@ VertexSoup SlitGrid(int n, float height) {
   return soup;
 }
 
+VertexSoup Unwelded(const VertexSoup& soup, float noise) {
+  VertexSoup result;
+  for (const VertexSoup::Attribute& attribute : soup.attributes) result.attributes.push_back({attribute.name, attribute.kind, attribute.components, {}});
+  uint32_t state = 1;
+  for (const Triangle& t : soup.triangles) {
+    const auto first = static_cast<uint32_t>(result.positions.size());
+    result.triangles.push_back({first, first + 1, first + 2});
+    for (const uint32_t v : t) {
+      result.positions.push_back(soup.positions[v]);
+      for (size_t a = 0; a < soup.attributes.size(); ++a) {
+        for (uint32_t c = 0; c < soup.attributes[a].components; ++c) {
+          state = state * 1664525 + 1013904223;
+          const float offset = noise * (static_cast<float>(state >> 8) / 8388608.0f - 1.0f);
+          result.attributes[a].values.push_back(soup.attributes[a].values[v * soup.attributes[a].components + c] + offset);
+        }
+      }
+    }
+  }
+  return result;
+}
+
 }  // namespace lacerta::shapes

@@ -38,6 +38,9 @@ std::vector<VertexSoup> HalvedTorus(int around, int tube);
 // most in the middle, not at all at both ends.
 VertexSoup SlitGrid(int n, float height = 0.0f);
 
+// Every triangle with vertices of its own, in the order of the corners, the values of which are up to `noise` off, by component.
+VertexSoup Unwelded(const VertexSoup& soup, float noise);
+
 }  // namespace lacerta::shapes
 
 #endif  // LACERTA_TESTS_SHAPES_ATTRIBUTED_SHAPES_H_

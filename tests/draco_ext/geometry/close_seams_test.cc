@@ -12,28 +12,6 @@
 namespace lacerta {
 namespace {
 
-// Every triangle with vertices of its own, the values of which are up to `noise` off, by component.
-VertexSoup Unwelded(const VertexSoup& soup, float noise) {
-  VertexSoup result;
-  for (const VertexSoup::Attribute& attribute : soup.attributes) result.attributes.push_back({attribute.name, attribute.kind, attribute.components, {}});
-  uint32_t state = 1;
-  for (const Triangle& t : soup.triangles) {
-    const auto first = static_cast<uint32_t>(result.positions.size());
-    result.triangles.push_back({first, first + 1, first + 2});
-    for (const uint32_t v : t) {
-      result.positions.push_back(soup.positions[v]);
-      for (size_t a = 0; a < soup.attributes.size(); ++a) {
-        for (uint32_t c = 0; c < soup.attributes[a].components; ++c) {
-          state = state * 1664525 + 1013904223;
-          const float offset = noise * (static_cast<float>(state >> 8) / 8388608.0f - 1.0f);
-          result.attributes[a].values.push_back(soup.attributes[a].values[v * soup.attributes[a].components + c] + offset);
-        }
-      }
-    }
-  }
-  return result;
-}
-
 std::vector<uint32_t> NumbersOfValues(const AttributedMesh& mesh) {
   std::vector<uint32_t> numbers;
   for (const MeshAttribute& attribute : mesh.attributes) numbers.push_back(attribute.num_values());
@@ -48,7 +26,7 @@ struct Cylinder {
 
 TEST(CloseSeamsTest, NoiseIsNoSeam) {
   const Cylinder cylinder;
-  AttributedMesh noisy = WeldSoups({Unwelded(cylinder.soup, 1e-6f)}).value();
+  AttributedMesh noisy = WeldSoups({shapes::Unwelded(cylinder.soup, 1e-6f)}).value();
   const AttributedMesh before = noisy;
   ASSERT_GT(noisy.attributes[0].num_values(), 4 * cylinder.mesh.attributes[0].num_values());
   CloseSeams(std::vector<double>(noisy.attributes.size(), 1e-3), 1.0, &noisy);

@@ -129,18 +129,10 @@ TEST(Skin, PrimitivesStayJoinedInPoses) {
 
 // Every triangle with vertices of its own, whose weights are off by as much as a tool's arithmetic leaves.
 shapes::SkinnedSoup WithNoisyWedges(const shapes::SkinnedSoup& skinned) {
-  shapes::SkinnedSoup result;
-  for (const VertexSoup::Attribute& a : skinned.soup.attributes) result.soup.attributes.push_back({a.name, a.kind, a.components, {}});
+  shapes::SkinnedSoup result{shapes::Unwelded(skinned.soup, 0.0f), {}, {}};
   uint32_t state = 1;
   for (const Triangle& t : skinned.soup.triangles) {
-    const auto first = static_cast<uint32_t>(result.soup.positions.size());
-    result.soup.triangles.push_back({first, first + 1, first + 2});
     for (const size_t v : t) {
-      result.soup.positions.push_back(skinned.soup.positions[v]);
-      for (size_t a = 0; a < skinned.soup.attributes.size(); ++a) {
-        const VertexSoup::Attribute& values = skinned.soup.attributes[a];
-        for (size_t c = 0; c < values.components; ++c) result.soup.attributes[a].values.push_back(values.values[v * values.components + c]);
-      }
       for (size_t c = 0; c < 4; ++c) {
         state = state * 1664525 + 1013904223;
         result.joints.push_back(skinned.joints[4 * v + c]);
