@@ -31,7 +31,7 @@ std::array<int32_t, 2> OctahedralFromNormal(const Vec3f& normal, int bits) {
 }
 
 Vec3f NormalFromOctahedral(const std::array<int32_t, 2>& point, int bits) {
-  const double center = Largest(bits) / 2;
+  const double center = 0.5 * Largest(bits);
   const double s = point[0] / center - 1, t = point[1] / center - 1;
   const double x = 1 - std::fabs(s) - std::fabs(t), fold = std::max(-x, 0.0);
   // Rounded to float at the end alone: GCC 12 leaves out what is rounded on the way where it makes vectors of it.

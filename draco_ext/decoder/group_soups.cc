@@ -73,7 +73,7 @@ std::vector<VertexSoup> SplitIntoSoups(const AttributedMesh& mesh, uint32_t num_
       number[corner] = static_cast<uint32_t>(soup.positions.size());
       AppendVertex(mesh, corner, &soup);
     }
-    soup.triangles.push_back({number[3 * f], number[3 * f + 1], number[3 * f + 2]});
+    soup.triangles.push_back({number[size_t{3} * f], number[size_t{3} * f + 1], number[size_t{3} * f + 2]});
   }
   return soups;
 }

@@ -167,7 +167,7 @@ class GroupEncoder {
   void AddNormals(uint32_t unique_id, int bits, const int32_t* points) {
     std::vector<float> values;
     for (uint32_t v = 0; v < group_.num_vertices; ++v) {
-      const Vec3f n = NormalFromOctahedral({points[2 * v], points[2 * v + 1]}, bits);
+      const Vec3f n = NormalFromOctahedral({points[size_t{2} * v], points[size_t{2} * v + 1]}, bits);
       values.insert(values.end(), {n.x, n.y, n.z});
     }
     octahedral_.emplace_back(AddFloats(draco::GeometryAttribute::NORMAL, unique_id, values, 3), bits);

@@ -24,12 +24,13 @@ Status Refine(Span<const uint8_t> refinement, const DecodeOptions& options, floa
   const Status refined = decoder.Append(refinement);
   result->level = decoder.level();
   result->state = decoder.state();
+  const bool is_complete = decoder.is_complete();
   if (result->level > 0) {
     result->mesh.triangles = decoder.Triangles();
     result->mesh.positions = std::move(decoder).TakeMesh().positions;
   }
   LACERTA_RETURN_IF_ERROR(refined);
-  if (decoder.is_complete()) return {};
+  if (is_complete) return {};
   if (result->level < info.num_levels) {
     return InvalidData("stream ends within level " + std::to_string(result->level + 1) + " of " +
                        std::to_string(info.num_levels));

@@ -251,8 +251,8 @@ QuantizedLevel QuantizeLevel(const SurfaceTarget& target, int level, const std::
       quantized.normal[e] = RoundToStep(on_plane, step.normal_step);
       continue;
     }
-    quantized.tangential[2 * e] = RoundToStep(local.x, step.tangential_step);
-    quantized.tangential[2 * e + 1] = RoundToStep(local.y, step.tangential_step);
+    quantized.tangential[size_t{2} * e] = RoundToStep(local.x, step.tangential_step);
+    quantized.tangential[size_t{2} * e + 1] = RoundToStep(local.y, step.tangential_step);
     quantized.normal[e] = RoundToStep(local.z, step.normal_step);
   }
   return quantized;

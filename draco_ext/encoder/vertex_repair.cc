@@ -43,8 +43,8 @@ void RepairVertices(const SurfaceTarget& target, CodedSurface* coded) {
     const std::vector<Vec3f> offsets = LevelOffsets(coarse, steps.is_curved, positions, predicted);
     for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
       const Vec3f local = frames[e].ToLocal(target.points[coarse.num_vertices + e] - predicted[e] - offsets[e]);
-      Repair(local.x, steps.tangential_step, &quantized.tangential[2 * e]);
-      Repair(local.y, steps.tangential_step, &quantized.tangential[2 * e + 1]);
+      Repair(local.x, steps.tangential_step, &quantized.tangential[size_t{2} * e]);
+      Repair(local.y, steps.tangential_step, &quantized.tangential[size_t{2} * e + 1]);
       Repair(local.z, steps.normal_step, &quantized.normal[e]);
     }
     SynthesizeLevel(coarse, target.stencils, steps, quantized, &positions);

@@ -17,6 +17,7 @@ TriangleMesh Together(TriangleMesh a, const TriangleMesh& b) {
 std::vector<uint32_t> JoinedVertices(const std::vector<Vec3f>& positions) {
   std::map<std::array<float, 3>, uint32_t> first;
   std::vector<uint32_t> joined;
+  joined.reserve(positions.size());
   for (const Vec3f& p : positions) {
     joined.push_back(first.emplace(std::array<float, 3>{p.x, p.y, p.z}, static_cast<uint32_t>(joined.size())).first->second);
   }

@@ -35,7 +35,7 @@ struct Vec2d {
 
 // The collapses that lead to one of the meshes of a history: the first `time` ones, but for those that are held back.
 struct HistoryCut {
-  HistoryCut(uint32_t t) : time(t) {}  // not explicit: a time alone is a cut
+  HistoryCut(uint32_t t) : time(t) {}  // NOLINT(google-explicit-constructor): a time alone is a cut
 
   uint32_t time;
   std::vector<uint8_t> held;  // #time, 1 for those held back; or empty where none is

@@ -14,8 +14,7 @@ using LatticePoint = std::array<int32_t, 3>;
 class LatticeDescent {
  public:
   LatticeDescent(const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate)
-      : mesh_(mesh), model_(model), neighbors_(neighbors), rate_(rate) {
-    origin_ = Vec3Cast<double>(BoundsOf(mesh.positions).low);
+      : mesh_(mesh), model_(model), neighbors_(neighbors), rate_(rate), origin_(Vec3Cast<double>(BoundsOf(mesh.positions).low)) {
     lattice_.reserve(mesh.positions.size());
     moves_.resize(mesh.positions.size());
     for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
@@ -138,7 +137,7 @@ class LatticeDescent {
   const DistanceModel& model_;
   const MeshNeighbors& neighbors_;
   const RateModel& rate_;
-  Vec3d origin_;
+  const Vec3d origin_;
   std::vector<LatticePoint> lattice_;
   std::vector<Vec3d> moves_;  // from mesh_ to the lattice points
   std::vector<LatticePoint> flap_errors_;

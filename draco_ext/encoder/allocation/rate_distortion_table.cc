@@ -49,7 +49,7 @@ struct RateDistortionTable::Knots {
 
 RateDistortionTable::RateDistortionTable(double alpha, double active) : RateDistortionTable(Knots(alpha, active)) {}
 
-RateDistortionTable::RateDistortionTable(Knots knots)
+RateDistortionTable::RateDistortionTable(const Knots& knots)
     : alpha_(knots.alpha),
       rate_of_slope_(knots.log_slopes, knots.Convex(knots.rates)),
       log_step_of_slope_(knots.log_slopes, knots.Convex(knots.log_steps)),

@@ -34,7 +34,7 @@ class RateDistortionTable {
 
  private:
   struct Knots;
-  explicit RateDistortionTable(Knots knots);
+  explicit RateDistortionTable(const Knots& knots);
 
   double alpha_;
   MonotoneCubic rate_of_slope_;      // [R; ln(-h)]
