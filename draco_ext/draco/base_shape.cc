@@ -41,6 +41,18 @@ double LogDetailBits(const InputSurface& surface, const CollapseHistory& history
 
 }  // namespace
 
+std::vector<CollapseHistory> ShapedHistories(const InputSurface& surface, const Topology& topology) {
+  std::array<std::optional<CollapseHistory>, kAspectPowers.size()> made;
+  tbb::parallel_for(size_t{0}, made.size(), [&](size_t h) {
+    DecimateOptions options;
+    options.aspect_power = kAspectPowers[h];
+    made[h].emplace(Decimate(surface.mesh(), topology, options));
+  });
+  std::vector<CollapseHistory> histories;
+  for (std::optional<CollapseHistory>& history : made) histories.push_back(*std::move(history));
+  return histories;
+}
+
 CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& topology, double typical_base, double lambda,
                                   EncodeMode mode, const std::vector<double>& sizes) {
   if (sizes.empty()) {
@@ -48,15 +60,10 @@ CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& t
     options.aspect_power = kAspectPowers[0];
     return Decimate(surface.mesh(), topology, options);
   }
-  std::array<std::optional<CollapseHistory>, kAspectPowers.size()> histories;
-  tbb::parallel_for(size_t{0}, histories.size(), [&](size_t h) {
-    DecimateOptions options;
-    options.aspect_power = kAspectPowers[h];
-    histories[h].emplace(Decimate(surface.mesh(), topology, options));
-  });
-  std::vector<double> bits(kAspectPowers.size() * sizes.size());
+  std::vector<CollapseHistory> histories = ShapedHistories(surface, topology);
+  std::vector<double> bits(histories.size() * sizes.size());
   tbb::parallel_for(size_t{0}, bits.size(), [&](size_t i) {
-    bits[i] = LogDetailBits(surface, *histories[i / sizes.size()], typical_base * sizes[i % sizes.size()], lambda, mode);
+    bits[i] = LogDetailBits(surface, histories[i / sizes.size()], typical_base * sizes[i % sizes.size()], lambda, mode);
   });
   size_t best = 0;
   double fewest = std::numeric_limits<double>::infinity();
@@ -67,7 +74,7 @@ CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& t
     best = h;
     fewest = sum;
   }
-  return std::move(*histories[best]);
+  return std::move(histories[best]);
 }
 
 }  // namespace lacerta

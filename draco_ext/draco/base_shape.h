@@ -15,6 +15,9 @@
 
 namespace lacerta {
 
+// The surface simplified in each of the ways. topology: of surface.mesh(), with its curves.
+std::vector<CollapseHistory> ShapedHistories(const InputSurface& surface, const Topology& topology);
+
 // Simplifies the surface in more than one way and returns the history over whose base meshes, near the usual sizes, the details take the
 // fewest bits.
 //   topology      of surface.mesh(), with its curves

@@ -159,11 +159,15 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
   const InputSurface surface(parts.refined, parts.topology);
   const SearchEffort effort = EffortOf(options.effort);
   const double psnr = TypicalPsnr(target, static_cast<double>(mesh.positions.size()));
-  std::optional<CollapseHistory> history;
+  std::vector<CollapseHistory> histories;
   tbb::parallel_invoke(
       [&] {
         const double lambda = UsualLambda(psnr, meter.diagonal());
-        history.emplace(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), lambda, options.mode, effort.shape_sizes));
+        if (effort.every_shape) {
+          histories = ShapedHistories(surface, parts.topology);
+        } else {
+          histories.push_back(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), lambda, options.mode, effort.shape_sizes));
+        }
       },
       [&] {
         if (sequence != nullptr) sequence->emplace(mesh);
@@ -171,7 +175,16 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
   const StillPart still = PrepareStillPart(parts.still, parts.refined, DistanceOfPsnr(psnr, meter.diagonal()));
   *report = {parts.refined_components,       parts.still_components, still.hidden_components,
              parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices};
-  return CodeAtTarget({surface, *history, still.mesh}, meter, target, options.mode, options.progress, effort);
+  StatusOr<ChosenStream> best = InternalError("no simplification was tried");
+  for (size_t h = 0; h < histories.size(); ++h) {
+    const auto progress = [&](double share, const char* what) {
+      if (options.progress) options.progress((static_cast<double>(h) + share) / static_cast<double>(histories.size()), what);
+    };
+    StatusOr<ChosenStream> chosen = CodeAtTarget({surface, histories[h], still.mesh}, meter, target, options.mode, progress, effort);
+    const bool is_better = !best.ok() || (chosen.ok() && IsBetter(OutcomeOf(chosen.value().measured), OutcomeOf(best.value().measured), target));
+    if (is_better) best = std::move(chosen);
+  }
+  return best;
 }
 
 // The surface at the target on its own connectivity, remeshed, or as a simplified mesh without levels, whichever is better. crowding: of

@@ -20,6 +20,7 @@ struct SearchEffort {
   int least_tries = 2;  // at the target: small changes of the slope give other streams, of which the smallest is kept
   std::vector<double> shape_sizes = {0.6, 1.0, 1.6};  // as in BestShapedHistory
   double zero_level_tries = 1.0;  // share of the usual ones, at the end of the search for a stream without levels
+  bool every_shape = false;       // all of ShapedHistories are searched, not the one that looks best
 };
 
 // docs/results/effort_table.md has what they cost and gain.
@@ -27,7 +28,11 @@ inline SearchEffort EffortOf(Effort effort) {
   switch (effort) {
     case Effort::kFast: return {1.5, 0.03, 1, 1, 1, 3, 0, 1, {}, 0.25};
     case Effort::kNormal: return {};
-    case Effort::kBest: return {1.225, 0.1, 100, 4, 3, 10, 5, 5, {0.6, 1.0, 1.6}, 1.0};
+    case Effort::kBest: {  // what kNormal finds is among what this finds
+      SearchEffort widest;
+      widest.every_shape = true;
+      return widest;
+    }
   }
   return {};
 }

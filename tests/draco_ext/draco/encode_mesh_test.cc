@@ -115,6 +115,22 @@ TEST(EncodeMeshTest, CustomFormHoldsACompactBase) {
   }
 }
 
+TEST(EncodeMeshTest, BestEffortIsNeverLargerAndSometimesSmaller) {
+  size_t smaller = 0;
+  for (const TriangleMesh& mesh : {Scan(), Ring()}) {
+    for (const double psnr : {46.0, 50.0}) {
+      EncodeOptions options = OptionsFor(Kind::kPsnr, psnr);
+      const size_t normal = EncodeOrDie(mesh, options).stream.size();
+      options.effort = Effort::kBest;
+      const size_t best = EncodeOrDie(mesh, options).stream.size();
+      EXPECT_LE(best, normal) << psnr << " dB";
+      EXPECT_GE(static_cast<double>(best), 0.75 * static_cast<double>(normal)) << psnr << " dB";
+      smaller += best < normal;
+    }
+  }
+  EXPECT_GT(smaller, 0u);
+}
+
 TEST(EncodeMeshTest, ErrorTargetIsThePsnrTargetInAnotherUnit) {
   const EncodedMesh error = EncodeOrDie(Scan(), OptionsFor(Kind::kError, 3.1622776601683794e-3));
   const EncodedMesh psnr = EncodeOrDie(Scan(), OptionsFor(Kind::kPsnr, 50));
