@@ -44,10 +44,10 @@ FourWeights LargestFour(const float* row, const JointTable& joints) {
 
 Status SpreadWeights(const JointTable& joints, VertexSoup* soup) {
   VertexSoup::Attribute* const weights = Find(soup, kWeightsName);
-  if (weights == nullptr) return Status();
   const VertexSoup::Attribute* const named = Find(soup, kJointsName);
-  if (named == nullptr || named->components != kKept || weights->components != kKept)
-    return InvalidData("the base has weights without joints");
+  if (weights == nullptr && named == nullptr) return Status();
+  if (weights == nullptr || named == nullptr || named->components != kKept || weights->components != kKept)
+    return InvalidData("the base has not four joints and four weights for each vertex");
   std::vector<float> values(soup->positions.size() * joints.size(), 0.0f);
   for (size_t i = 0; i < weights->values.size(); ++i) {
     if (weights->values[i] == 0) continue;

@@ -29,8 +29,8 @@ struct FourWeights {
 FourWeights LargestFour(const float* row, const JointTable& joints);
 
 // Makes one attribute of a soup's JOINTS_0 and WEIGHTS_0 (4 components each): WEIGHTS_0 with a component for each of
-// `joints`. Soups without WEIGHTS_0 stay as they are. Fails with kInvalidData where JOINTS_0 is missing, or names a
-// joint with a weight that is not in the table.
+// `joints`. Soups without both stay as they are. Fails with kInvalidData where one of them is missing, and where a joint
+// with a weight is not in the table.
 Status SpreadWeights(const JointTable& joints, VertexSoup* soup);
 
 // The way back, by LargestFour. JOINTS_0 becomes the last attribute, of whole numbers.

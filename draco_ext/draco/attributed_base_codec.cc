@@ -327,7 +327,8 @@ StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std
   for (VertexSoup::Attribute& attribute : soup.attributes) {
     const auto of = std::find_if(precision.begin(), precision.end(), [&](const AttributeLattice& p) { return p.name == attribute.name; });
     if (of == precision.end() || of->components != attribute.components)
-      return InvalidData("attribute " + attribute.name + " of the base is not of " + std::to_string(of->components) + " floats");
+      return InvalidData("attribute " + attribute.name + " of the base, of " + std::to_string(attribute.components) +
+                         " floats, is none of the stream's");
     attribute.kind = of->kind;
   }
   return soup;

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "common/attribute_layout.h"
 #include "document/buffer_edit.h"
 
 namespace lacerta {
@@ -58,8 +59,7 @@ Status ParseJoints(const Json& json, ProgressiveStream* stream) {
   LACERTA_ASSIGN_OR_RETURN(const std::vector<uint64_t> joints, ParseIndices(json, "joints"));
   const std::set<uint64_t> distinct(joints.begin(), joints.end());
   const bool has_weights = std::count(stream->attributes.begin(), stream->attributes.end(), kWeightsName) == 1;
-  constexpr size_t kMostJoints = 1024;  // components of a stream
-  if (joints.empty() || joints.size() > kMostJoints || distinct.size() != joints.size() ||
+  if (joints.empty() || joints.size() > kMostComponents || distinct.size() != joints.size() ||
       *distinct.rbegin() > std::numeric_limits<uint16_t>::max() || !has_weights) {
     return InvalidData("\"joints\" are not those of weights");
   }

@@ -2,7 +2,7 @@
 
 /** attributes of a base with JOINTS_0 and WEIGHTS_0 -> with WEIGHTS_0 of one component for each of `joints` (of the stream's JSON; undefined: as they are). */
 export function spreadWeights(joints, {JOINTS_0: named, WEIGHTS_0: weights, ...others}) {
-  if (!joints || !named) return {...others, ...(weights && {WEIGHTS_0: weights})};
+  if (!joints || !named || !weights) return {...others, ...(weights && {WEIGHTS_0: weights})};
   const spread = new Float32Array(weights.length / 4 * joints.length);
   weights.forEach((weight, i) => {
     if (weight === 0) return;

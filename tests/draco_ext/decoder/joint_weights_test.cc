@@ -49,6 +49,12 @@ TEST(JointWeights, SpreadAndGatheredTheyAreTheSame) {
   EXPECT_EQ(soup.attributes[2].values, (std::vector<float>{5, 13, 0, 0, 300, 0, 0, 0}));
 }
 
+TEST(JointWeights, JointsWithoutWeightsAreRefused) {
+  VertexSoup soup = Soup();
+  soup.attributes.erase(soup.attributes.begin());
+  EXPECT_EQ(SpreadWeights(kJoints, &soup).code(), StatusCode::kInvalidData);
+}
+
 TEST(JointWeights, WhatTheTableHasNotGotIsRefused) {
   VertexSoup soup = Soup();
   EXPECT_EQ(SpreadWeights({3, 5, 13}, &soup).code(), StatusCode::kInvalidData);
