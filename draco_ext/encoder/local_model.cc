@@ -21,15 +21,32 @@ std::vector<Vec3f> BringDown(const SurfaceTarget& target, const std::vector<Vec3
 }  // namespace
 
 std::vector<SymmetricMatrix> Curvatures(const SurfaceTarget& target, int level) {
+  const int ahead = LevelAhead(target, level), farther = LevelAhead(target, ahead);
   const Reach reach(target, level);
-  const std::vector<float>& masses = target.masses[LevelAhead(target, level)];
   std::vector<SymmetricMatrix> curvatures(target.topologies[level].num_vertices);
+  std::vector<float> weights(target.topologies[farther].num_vertices, 0.0f);  // with which the vertex at hand moves those two levels finer
+  std::vector<uint32_t> moved;                                                // those that it moves
+  const auto add = [&](uint32_t u, float weight) {
+    if (weights[u] == 0) moved.push_back(u);
+    weights[u] += weight;
+  };
   for (uint32_t v = 0; v < curvatures.size(); ++v) {
-    reach.Visit(v, [&](uint32_t u, float weight) {
+    moved.clear();
+    reach.Visit(v, add);
+    if (farther > ahead) {
+      const StencilSpread& spread = target.spreads[ahead];
+      for (size_t i = 0, num_ahead = moved.size(); i < num_ahead; ++i) {
+        const uint32_t u = moved[i];
+        for (uint32_t k = spread.first[u]; k < spread.first[u + 1]; ++k) {
+          add(target.topologies[ahead].num_vertices + spread.edges[k], weights[u] * spread.weights[k]);
+        }
+      }
+    }
+    for (const uint32_t u : moved) {
       const VertexMetric metric = MetricAt(target, u);
-      const float mass = weight * weight * masses[u];
+      const float weight = std::exchange(weights[u], 0.0f), mass = weight * weight * target.masses[farther][u];
       curvatures[v].Add(target.normals[u], mass * metric.slide, mass * (metric.leave - metric.slide));
-    });
+    }
   }
   return curvatures;
 }

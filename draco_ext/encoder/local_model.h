@@ -11,7 +11,8 @@
 
 namespace lacerta {
 
-// Half the second derivative of the distortion with respect to the position of each vertex of `level`, as LocalModel sees it: #V.
+// Half the second derivative of the distortion with respect to the position of each vertex of `level`: #V. Its effect is looked at two
+// levels finer, where there are so many: with the masses lumped at one it is overstated by some hundredths (docs/decisions/0006-descent.md).
 std::vector<SymmetricMatrix> Curvatures(const SurfaceTarget& target, int level);
 
 // Half the gradient of the distortion with respect to the positions of every level 0 .. L, all finer details staying as they are:
