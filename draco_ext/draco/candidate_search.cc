@@ -23,11 +23,13 @@ constexpr double kFirstGrowth = 0.077;   // of ln(lambda) beside the squared dis
 constexpr double kUsualPsnr = 70;        // where to begin when only the rate is given
 
 // What counts as met: [psnr, psnr + 0.3) and (0.98, 1] of the bytes, with a margin for the noise of the measure.
-constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.2, kPsnrNear = 0.1;
+constexpr double kPsnrMargin = 0.03, kPsnrSlack = 0.2, kPsnrNear = 0.07;
 constexpr double kBytesSlack = 0.018;
 // What is aimed at lies inside of that, so that jumps of the curve hardly ever skip it.
-constexpr double kPsnrAim = 0.06, kBytesAim = 0.005;
+constexpr double kPsnrAim = 0.045, kBytesAim = 0.005;
 constexpr int kScoreTries = 2;
+constexpr int kMostDraws = 4, kSettlePasses = 2;  // passes: from a stream near the goal to one at it
+constexpr double kComparable = 0.7;  // dB from the goal: from farther off, extrapolation favors what hardly can reach it
 constexpr double kNearEnough = 0.4;  // dB: typical slopes will do
 constexpr int kMeetTries = 16, kEstimatedTries = 6;
 constexpr double kStepChange = 1.5;  // between slopes of steps that are tried
@@ -61,10 +63,10 @@ double CandidateSearch::CodingPsnr(double psnr) const {
 
 double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogBytesPerLogLambda : kPsnrPerLogLambda; }
 
-StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, int passes, int quality_layers) {
+StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, int passes, int quality_layers, const CodedSurface* from) {
   Attempt attempt;
   const double lambda = std::exp(log_lambda);
-  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({lambda, lambda * steps_.details, lambda * steps_.base, steps_.last_detailed, passes, quality_layers}, mode_));
+  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({lambda, lambda * steps_.details, lambda * steps_.base, steps_.last_detailed, passes, quality_layers}, mode_, from));
   const double estimate = EstimatePsnr(attempt.stream);
   if (!offset_) {
     constexpr uint64_t kRoughSamples = 50'000;
@@ -109,8 +111,16 @@ double CandidateSearch::NextGuess() const {
     const double share = (above->second - Goal()) / (above->second - below->second);
     return above->first + width * std::clamp(share, 0.08, 0.92);
   }
-  const auto nearest = above != values_.end() ? above : below;
-  const double step = (Goal() - nearest->second) / TypicalSlope();
+  const bool all_above = above != values_.end();
+  const auto nearest = all_above ? above : below;
+  double slope = TypicalSlope();
+  // Descents that go on from a stream change less than new ones.
+  if (const auto next = all_above ? (above == values_.begin() ? values_.end() : std::prev(above)) : std::next(below); next != values_.end()) {
+    constexpr double kFlattest = 0.2;
+    const double seen = (next->second - nearest->second) / (next->first - nearest->first);
+    slope = std::clamp(seen, slope, kFlattest * slope);
+  }
+  const double step = (Goal() - nearest->second) / slope;
   // Beyond all attempts: somewhat farther than it seems, so that the goal gets bracketed.
   return nearest->first + std::clamp(1.1 * step, -4.0, 4.0) + (step < 0 ? -0.02 : 0.02);
 }
@@ -124,10 +134,10 @@ bool CandidateSearch::JumpsOverGoal() const {
 
 // A finer slope no longer raises the PSNR: the remesh itself is the limit.
 bool CandidateSearch::CannotReach() const {
-  if (!values_are_measured_ || values_.size() < 3) return false;
+  if (values_.size() < 2 || (values_are_measured_ && values_.size() < 3)) return false;
   const auto first = values_.begin(), second = std::next(first);
-  constexpr double kApart = 0.1;  // nearer, and noise decides
-  return first->second < Goal() && second->first - first->first > kApart && (first->second - second->second) < 0.15 * (second->first - first->first);
+  const double apart = values_are_measured_ ? 0.1 : 1.0;  // nearer, and noise decides
+  return first->second < Goal() && second->first - first->first > apart && (first->second - second->second) < 0.15 * (second->first - first->first);
 }
 
 double CandidateSearch::Miss(const Attempt& attempt) const {
@@ -165,7 +175,6 @@ StatusOr<double> CandidateSearch::Score() {
 }
 
 StatusOr<CandidateSearch::Attempt> CandidateSearch::TryNearGoal(int passes) {
-  constexpr double kComparable = 0.7;  // dB: from farther off, extrapolation favors what hardly can reach the goal
   LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(start_.log_lambda, passes, 1));
   if (Miss(attempt) <= kComparable) return attempt;
   LACERTA_ASSIGN_OR_RETURN(Attempt other, Try(start_.log_lambda + (Goal() - attempt.value) / TypicalSlope(), passes, 1));
@@ -208,27 +217,61 @@ void CandidateSearch::SuitSteps() {
   climb([](StepChoice* c) { c->details *= kStepChange; }, [](StepChoice* c) { c->details /= kStepChange; });
 }
 
+// The best of a few codings near the goal, rather finer than that. Which coefficients a descent ends with is up to chance: slopes that hardly
+// differ give streams that lie a percent of the bytes above or below the curve. From one of them the descent goes on to a slightly coarser one
+// along the curve, while a finer one takes more bytes that way.
+StatusOr<CandidateSearch::Attempt> CandidateSearch::Draw() {
+  constexpr double kFiner = 0.04;  // of ln(lambda): 0.12 dB
+  const auto is_better = [&](const Attempt& a, const Attempt& b) {
+    if (std::max(Miss(a), Miss(b)) > kComparable) return Miss(a) < Miss(b);
+    const bool a_fine = a.value >= Goal(), b_fine = b.value >= Goal();
+    return a_fine != b_fine ? a_fine : Merit(a) < Merit(b);
+  };
+  std::optional<Attempt> best;
+  for (int i = 0; i < effort_.draws || (i < kMostDraws && Miss(*best) > kComparable); ++i) {
+    if (CannotReach()) break;
+    StatusOr<Attempt> tried = Try(NextGuess() - kFiner, effort_.meet_passes, target_.quality_layers);
+    if (!tried.ok() && best) break;  // so coarse a lattice cannot carry the base: what there is must do
+    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, std::move(tried));
+    if (!best || is_better(attempt, *best)) best = std::move(attempt);
+  }
+  return *std::move(best);
+}
+
+// What the descent may go on from to the goal; none where that is too far off.
+std::optional<CodedSurface> CandidateSearch::SettleFrom(const Attempt& drawn) const {
+  if (mode_ == EncodeMode::kPaper || candidate_.normal_mesh().keeps_vertices || Miss(drawn) > kComparable) return std::nullopt;
+  return drawn.stream.coded;
+}
+
+StatusOr<CandidateSearch::Attempt> CandidateSearch::Settle(const std::optional<CodedSurface>& from) {
+  return Try(NextGuess(), from ? kSettlePasses : effort_.meet_passes, target_.quality_layers, from ? &*from : nullptr);
+}
+
 StatusOr<MeasuredStream> CandidateSearch::Meet() {
   if (effort_.suit_passes > 0 && mode_ != EncodeMode::kPaper) SuitSteps();
   values_.clear();  // those of fewer passes
-  return target_.is_rate ? MeetRate() : MeetQuality();
+  LACERTA_ASSIGN_OR_RETURN(Attempt drawn, Draw());
+  values_ = {{drawn.log_lambda, drawn.value}};
+  return target_.is_rate ? MeetRate(std::move(drawn)) : MeetQuality(std::move(drawn));
 }
 
-StatusOr<MeasuredStream> CandidateSearch::MeetRate() {
+StatusOr<MeasuredStream> CandidateSearch::MeetRate(Attempt drawn) {
   const auto excess = [&](const Attempt& a) { return a.value - std::log(target_.bytes); };
-  std::optional<Attempt> best;
-  for (int i = 0; i < kMeetTries && !(best && excess(*best) <= 0 && excess(*best) >= -kBytesSlack); ++i) {
-    StatusOr<Attempt> tried = Try(NextGuess(), effort_.meet_passes, target_.quality_layers);
-    if (!tried.ok() && best) break;  // so coarse a lattice cannot carry the base: what there is must do
-    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, std::move(tried));
-    const bool keeps = excess(attempt) <= 0, kept = best && excess(*best) <= 0;
-    if (!best || (keeps == kept ? std::fabs(excess(attempt)) < std::fabs(excess(*best)) : keeps)) best = std::move(attempt);
+  const std::optional<CodedSurface> from = SettleFrom(drawn);
+  Attempt best = std::move(drawn);
+  for (int i = 0; i < kMeetTries && !(excess(best) <= 0 && excess(best) >= -kBytesSlack); ++i) {
+    StatusOr<Attempt> tried = Settle(from);
+    if (!tried.ok()) break;  // so coarse a lattice cannot carry the base: what there is must do
+    Attempt attempt = std::move(tried).value();
+    const bool keeps = excess(attempt) <= 0, kept = excess(best) <= 0;
+    if (keeps == kept ? std::fabs(excess(attempt)) < std::fabs(excess(best)) : keeps) best = std::move(attempt);
   }
-  const bool meets_target = excess(*best) <= 0;
-  return MeasuredStream{std::move(best->stream), best->psnr, meets_target, measurements_};
+  const bool meets_target = excess(best) <= 0;
+  return MeasuredStream{std::move(best.stream), best.psnr, meets_target, measurements_};
 }
 
-StatusOr<MeasuredStream> CandidateSearch::MeetQuality() {
+StatusOr<MeasuredStream> CandidateSearch::MeetQuality(Attempt drawn) {
   constexpr uint64_t kSamples = 200'000;
   const auto excess = [&](const Attempt& a) { return a.psnr - target_.psnr; };
   // Safely over the target, then just so, then under it.
@@ -248,19 +291,19 @@ StatusOr<MeasuredStream> CandidateSearch::MeetQuality() {
   };
   const auto is_done = [&] { return best && rank(*best) == 2; };
 
+  const std::optional<CodedSurface> from = SettleFrom(drawn);
+  StatusOr<Attempt> attempt = std::move(drawn);
   std::map<double, double> measured;  // dB by ln(lambda)
   std::optional<Attempt> unmeasured;
-  for (int i = 0; i < kEstimatedTries && !(is_done() && excess(*best) <= kPsnrNear && i >= effort_.least_tries) && measurements_ < kMostMeasurements; ++i) {
-    const double log_lambda = NextGuess();
-    StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes, target_.quality_layers);
-    if (!tried.ok() && (best || unmeasured)) break;
-    LACERTA_ASSIGN_OR_RETURN(Attempt attempt, std::move(tried));
-    if (rank(attempt) < 2) {  // by the estimate
-      unmeasured = std::move(attempt);
+  for (int i = 0; i < kEstimatedTries && !(is_done() && excess(*best) <= kPsnrNear) && !CannotReach() && measurements_ < kMostMeasurements; ++i) {
+    if (i > 0) attempt = Settle(from);
+    if (!attempt.ok()) break;
+    const double log_lambda = attempt.value().log_lambda, estimate = EstimatePsnr(attempt.value().stream);
+    if (rank(attempt.value()) < 2) {  // by the estimate
+      unmeasured = std::move(attempt).value();
       continue;
     }
-    const double estimate = EstimatePsnr(attempt.stream);
-    measured[log_lambda] = measure(std::move(attempt));
+    measured[log_lambda] = measure(std::move(attempt).value());
     offset_ = measured[log_lambda] - estimate;
     unmeasured.reset();
   }

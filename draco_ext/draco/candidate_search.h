@@ -70,7 +70,8 @@ class CandidateSearch {
     double psnr = 0;   // dB: estimated, or measured once it was
     double value = 0;  // as in values_
   };
-  StatusOr<Attempt> Try(double log_lambda, int passes, int quality_layers);  // passes: of the descent
+  // passes: of the descent; from: as for NormalMeshCandidate::Code.
+  StatusOr<Attempt> Try(double log_lambda, int passes, int quality_layers, const CodedSurface* from = nullptr);
   double EstimatePsnr(const CodedStream& stream) const;
   double MeasurePsnr(const Attempt& attempt, uint64_t num_samples);
   double Goal() const;  // the value aimed at
@@ -81,8 +82,11 @@ class CandidateSearch {
   void LearnSlope(const Attempt& a, const Attempt& b);  // of the same surface at two values of lambda
   StatusOr<Attempt> TryNearGoal(int passes);  // at the start, or nearer to the goal where that is far off
   void SuitSteps();
-  StatusOr<MeasuredStream> MeetRate();
-  StatusOr<MeasuredStream> MeetQuality();
+  StatusOr<Attempt> Draw();
+  std::optional<CodedSurface> SettleFrom(const Attempt& drawn) const;
+  StatusOr<Attempt> Settle(const std::optional<CodedSurface>& from);
+  StatusOr<MeasuredStream> MeetRate(Attempt drawn);
+  StatusOr<MeasuredStream> MeetQuality(Attempt drawn);
   double TypicalSlope() const;
   // The attempts next to the goal: the coarsest that is not under it and the finest that is under it; values fall as lambda
   // grows, but for noise. Either may be missing.

@@ -32,7 +32,7 @@ constexpr int kMostQualityLayers = 8;
 // Measured error of every state that the stream decodes to.
 Status ReportLevels(const SurfaceDistanceMeter& meter, const MeasuredStream& coded, const ResolvedTarget& target, EncodeReport* report) {
   const CodedStream& stream = coded.stream;
-  LACERTA_ASSIGN_OR_RETURN(ProgressiveDecoder decoder, ProgressiveDecoder::Create(stream.base_mesh, {}));
+  LACERTA_ASSIGN_OR_RETURN(ProgressiveDecoder decoder, ProgressiveDecoder::Create(stream.coded.base, {}));
   LACERTA_ASSIGN_OR_RETURN(const RefinementInfo info, ReadRefinementInfo(stream.refinement));
   uint64_t bytes = 0;
   size_t refinement_bytes = 0;
@@ -136,7 +136,7 @@ bool IsWorthItsVertices(const MeasuredStream& own, const MeasuredStream& remeshe
 
 bool HasLargeBase(const ChosenStream& chosen, const ResolvedTarget& target, const TriangleMesh& input) {
   const double psnr = TypicalPsnr(target, static_cast<double>(input.positions.size()));
-  return static_cast<double>(chosen.measured.stream.base_mesh.lattice.size()) > TypicalBase(psnr);
+  return static_cast<double>(chosen.measured.stream.coded.base.lattice.size()) > TypicalBase(psnr);
 }
 
 // The mesh on its own connectivity where that is subdivided and reaches the target; none else.

@@ -86,25 +86,31 @@ BaseMesh NormalMeshCandidate::BaseLattice(const TriangleMesh& base, double step)
   return lattice;
 }
 
-StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope, EncodeMode mode, std::vector<Vec3f>* decoded) const {
-  if (mode == EncodeMode::kPaper) {
-    LACERTA_ASSIGN_OR_RETURN(CodedSurface coded, CodeByModel(normal_mesh_.mesh, slope.lambda));
-    *decoded = Synthesize(target_, coded);
-    return coded;
-  }
+// The remesh rounded to the lattice and the steps of a slope. decoded: becomes what a decoder makes of it.
+CodedSurface NormalMeshCandidate::FirstRounding(const CodingSlope& slope, std::vector<Vec3f>* decoded) const {
   const std::vector<Vec3f> base(target_.points.begin(), target_.points.begin() + num_base_vertices());
   const BaseMesh lattice = BaseLattice({base, normal_mesh_.mesh.base_triangles}, BaseStepForSlope(slope.base_lambda, num_base_vertices()));
-  DescentOptions options;
-  options.lambda = slope.lambda;
-  options.passes = slope.passes;
   std::vector<LevelSteps> steps = StepsForSlope(target_, slope.last_detailed, slope.step_lambda);
   if (!target_.keeps_vertices) {
     // Levels far beyond the last detailed one hardly ever keep a coefficient: not looking at them takes a fraction of the time.
     constexpr size_t kTriedSilentLevels = 1;
     for (size_t i = static_cast<size_t>(slope.last_detailed) + kTriedSilentLevels; i < steps.size(); ++i) steps[i] = steps[i].Silent();
   }
-  CodedSurface coded = QuantizeClosedLoop(target_, lattice, steps, decoded);
-  coded = Descend(target_, std::move(coded), options, decoded);
+  return QuantizeClosedLoop(target_, lattice, steps, decoded);
+}
+
+StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope, EncodeMode mode, const CodedSurface* from,
+                                                        std::vector<Vec3f>* decoded) const {
+  if (mode == EncodeMode::kPaper) {
+    LACERTA_ASSIGN_OR_RETURN(CodedSurface coded, CodeByModel(normal_mesh_.mesh, slope.lambda));
+    *decoded = Synthesize(target_, coded);
+    return coded;
+  }
+  DescentOptions options;
+  options.lambda = slope.lambda;
+  options.passes = slope.passes;
+  if (from != nullptr) *decoded = Synthesize(target_, *from);
+  CodedSurface coded = Descend(target_, from != nullptr ? *from : FirstRounding(slope, decoded), options, decoded);
   if (target_.keeps_vertices) {
     RepairVertices(target_, &coded);
     *decoded = Synthesize(target_, coded);
@@ -112,12 +118,12 @@ StatusOr<CodedSurface> NormalMeshCandidate::CodeSurface(const CodingSlope& slope
   return coded;
 }
 
-StatusOr<CodedStream> NormalMeshCandidate::Code(const CodingSlope& slope, EncodeMode mode) const {
+StatusOr<CodedStream> NormalMeshCandidate::Code(const CodingSlope& slope, EncodeMode mode, const CodedSurface* from) const {
   std::vector<Vec3f> decoded;
-  LACERTA_ASSIGN_OR_RETURN(const CodedSurface coded, CodeSurface(slope, mode, &decoded));
   CodedStream stream;
-  LACERTA_ASSIGN_OR_RETURN(stream.base, RecodeBaseMesh(base_, coded.base));
-  LACERTA_ASSIGN_OR_RETURN(RefinementBytes refinement, Write(coded, slope));
+  LACERTA_ASSIGN_OR_RETURN(stream.coded, CodeSurface(slope, mode, from, &decoded));
+  LACERTA_ASSIGN_OR_RETURN(stream.base, RecodeBaseMesh(base_, stream.coded.base));
+  LACERTA_ASSIGN_OR_RETURN(RefinementBytes refinement, Write(stream.coded, slope));
   stream.part_sizes = {stream.base.size()};
   stream.part_sizes.insert(stream.part_sizes.end(), refinement.part_sizes.begin(), refinement.part_sizes.end());
   stream.refinement = std::move(refinement.bytes);
@@ -125,7 +131,6 @@ StatusOr<CodedStream> NormalMeshCandidate::Code(const CodingSlope& slope, Encode
                     normal_mesh_.mesh.tags};
   stream.plane_distortion = PlaneDistortion(target_, stream.decoded.positions);
   stream.triangles = FinestTriangles();
-  stream.base_mesh = coded.base;
   return stream;
 }
 

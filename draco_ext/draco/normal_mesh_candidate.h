@@ -23,7 +23,7 @@ struct CodedStream {
   Bytes base;                        // the base section
   Bytes refinement;
   std::vector<size_t> part_sizes;    // of the base section, then as in RefinementBytes
-  BaseMesh base_mesh;                // as decoders get it
+  CodedSurface coded;                // what both hold
   SemiRegularMesh decoded;
   std::vector<Triangle> triangles;   // of the finest level, as MeshAtLevel orders them
   double plane_distortion = 0;       // PlaneDistortion: about the squared distance to the unquantized remesh
@@ -59,7 +59,9 @@ class NormalMeshCandidate {
   StatusOr<CodedStream> Code(double lambda, EncodeMode mode) const {
     return Code({lambda, lambda, lambda, LastDetailed(lambda), DescentOptions().passes, 1}, mode);
   }
-  StatusOr<CodedStream> Code(const CodingSlope& slope, EncodeMode mode) const;
+  // from: a surface of this candidate coded near that slope, in the default mode. The descent goes on from it, with its steps and lattice: what comes is
+  // much like it, while from the beginning slopes that hardly differ give streams that differ by a percent. Null: from the beginning.
+  StatusOr<CodedStream> Code(const CodingSlope& slope, EncodeMode mode, const CodedSurface* from = nullptr) const;
 
   // LastDetailedLevel of this surface.
   int LastDetailed(double lambda) const { return LastDetailedLevel(target_, detail_scales_, lambda); }
@@ -72,8 +74,9 @@ class NormalMeshCandidate {
 
  private:
   BaseMesh BaseLattice(const TriangleMesh& base, double step) const;
+  CodedSurface FirstRounding(const CodingSlope& slope, std::vector<Vec3f>* decoded) const;
   // decoded: becomes what a decoder makes of it.
-  StatusOr<CodedSurface> CodeSurface(const CodingSlope& slope, EncodeMode mode, std::vector<Vec3f>* decoded) const;
+  StatusOr<CodedSurface> CodeSurface(const CodingSlope& slope, EncodeMode mode, const CodedSurface* from, std::vector<Vec3f>* decoded) const;
   StatusOr<RefinementBytes> Write(const CodedSurface& coded, const CodingSlope& slope) const;
   std::vector<Triangle> FinestTriangles() const;  // in the order of MeshAtLevel
 

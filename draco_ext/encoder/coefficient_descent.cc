@@ -52,6 +52,7 @@ int32_t BestValue(const LocalModel::Parabola& parabola, int32_t current, float s
                   const BitsOf& bits_of) {
   const float move = std::clamp(parabola.Lowest(), -reach, reach);
   const int32_t target = RoundToStep(static_cast<float>(current) * step + move, step);
+  if (current == 0 && target == 0) return 0;
   const int32_t toward_zero = target - (target > 0) + (target < 0);
   int32_t best = current;
   double best_cost = lambda * bits_of(current);

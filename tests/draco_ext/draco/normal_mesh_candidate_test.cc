@@ -67,6 +67,28 @@ TEST(NormalMeshCandidate, WithMoreLevelsGoesOnFromTheOneWithFewer) {
   }
 }
 
+TEST(NormalMeshCandidate, ADescentGoesOnFromAStreamToACoarserOne) {
+  const TriangleMesh input = shapes::BumpySphere(5, 0.1f, 0.003f);
+  const CollapseHistory history = testing::Decimated(input);
+  const InputSurface surface(input, testing::TopologyOf(input));
+  const NormalMeshCandidate candidate = NormalMeshCandidate::Create({surface, history, {}}, 60, 3).value();
+  for (const double lambda : {1e-10, 1e-9, 1e-8}) {
+    SCOPED_TRACE(lambda);
+    const auto code = [&](double slope, int passes, const CodedSurface* from) {
+      return candidate.Code({slope, slope, slope, candidate.LastDetailed(slope), passes, 1}, EncodeMode::kDefault, from).value();
+    };
+    const auto cost = [&](const CodedStream& s) { return s.plane_distortion + lambda * 8 * static_cast<double>(s.size()); };
+    const CodedStream first = code(lambda, 5, nullptr);
+    const CodedStream same = code(lambda, 2, &first.coded), coarser = code(1.1 * lambda, 2, &first.coded);
+    EXPECT_LT(cost(same), 1.001 * cost(first));
+    EXPECT_GT(cost(same), 0.97 * cost(first)) << "there was little left to gain";
+    EXPECT_LT(coarser.size(), first.size());
+    EXPECT_GT(coarser.size(), 0.93 * static_cast<double>(first.size()));
+    EXPECT_LT(cost(coarser), 1.005 * cost(first)) << "off the curve";
+    EXPECT_EQ(coarser.coded.base.step, first.coded.base.step);
+  }
+}
+
 // Two sheets `gap` apart that bend away from each other: at no gap they touch at two points, with a hole like an eye between.
 TriangleMesh Eye(float gap) {
   const TriangleMesh grid = shapes::GridWithBorder(20, 20);
