@@ -24,8 +24,9 @@ using ErrorCorrection = std::function<Status(const AttributedMesh&, uint64_t num
 
 // What values are for, where they do not say it themselves.
 struct AttributeMeaning {
-  JointTable joints = {};  // both as in AttributedStreamOptions
+  JointTable joints = {};  // all three as in AttributedStreamOptions
   ErrorFactors factors = {};
+  BytesBeside beside = {};
   ErrorCorrection correct = {};
 };
 

@@ -228,7 +228,7 @@ CodedSurface CodePositions(const SurfaceTarget& target, const BaseMesh& base, co
 }  // namespace
 
 size_t AttributedStream::size() const {
-  size_t sum = refinement.size();
+  size_t sum = refinement.size() + bytes_beside;
   for (const Bytes& b : bases) sum += b.size();
   return sum;
 }
@@ -294,6 +294,7 @@ StatusOr<AttributedStream> EncodeAttributedStream(const AttributedNormalMesh& me
   stream.refinement = std::move(refinement.bytes);
   stream.part_sizes = std::move(refinement.part_sizes);
   stream.base = std::move(coded_base.base);
+  if (options.beside) stream.bytes_beside = static_cast<size_t>(options.beside(stream.base));
   return stream;
 }
 

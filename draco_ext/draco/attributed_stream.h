@@ -21,6 +21,8 @@ namespace lacerta {
 // none may slide.
 StatusOr<NormalMesh> AsNormalMesh(SemiRegularMesh surface);
 
+using BytesBeside = std::function<uint64_t(const AttributedBase&)>;
+
 using ErrorFactors = std::function<std::vector<float>(const AttributedSemiRegularMesh&, size_t attribute)>;
 
 struct AttributedStreamOptions {
@@ -39,6 +41,8 @@ struct AttributedStreamOptions {
   // Called for each attribute with the surface as decoded and the values wanted there: #values x components factors on
   // how far values are off, at most 1 where one matters less; empty: all 1.
   ErrorFactors factors = {};
+  // Bytes that a host stores beside the stream for readers of the base alone; empty: none.
+  BytesBeside beside = {};
 };
 
 struct AttributedStream {
@@ -49,8 +53,9 @@ struct AttributedStream {
   AttributedSemiRegularMesh decoded;  // as decoders make it, in the order of `base`
   std::vector<double> errors;         // of each attribute, as in the options
   std::vector<size_t> residual_bytes; // of each attribute above the base, about
+  size_t bytes_beside = 0;            // as in the options
 
-  size_t size() const;
+  size_t size() const;  // of all
 };
 
 // mesh: of any order; each of its groups has one triangle at least. Fails with kInvalidArgument where arrays have not the shapes that the types tell, and with kInvalidData where the base cannot be coded

@@ -40,6 +40,7 @@ class PrecisionSearch {
     precision_.lambda = UsualLambda(Psnr(targets.distance, meter_.diagonal()), meter_.diagonal());
     precision_.joints = input.meaning.joints;
     precision_.factors = input.meaning.factors;
+    precision_.beside = input.meaning.beside;
     precision_.refit = [&original = input.original](AttributedSemiRegularMesh* decoded) { FitLevelAttributes(original, decoded); };
     for (size_t a = 0; a < mesh.attributes.size(); ++a) {
       precision_.errors.push_back(std::sqrt(Allowed(remesh.attributes[a].rms_99, targets.attributes[a])) / UnitOf(a));

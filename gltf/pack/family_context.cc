@@ -42,6 +42,12 @@ bool FamilyContext::HasTargets() const {
   return std::any_of(members().begin(), members().end(), [&](size_t member) { return !scene->sources[member].targets.empty(); });
 }
 
+std::vector<const std::vector<MorphTarget>*> FamilyContext::Targets() const {
+  std::vector<const std::vector<MorphTarget>*> targets;
+  for (const size_t member : members()) targets.push_back(&scene->sources[member].targets);
+  return targets;
+}
+
 StatusOr<std::optional<Skin>> FamilyContext::FindSkin() const {
   std::vector<const Source*> sources;
   for (const size_t member : members()) sources.push_back(&scene->sources[member]);

@@ -27,6 +27,7 @@ struct FamilyContext {
   double Error() const { return FamilyError(scene->families, family, TargetPsnr(options->encode.target)); }  // mesh units
   std::vector<const Primitive*> Primitives() const;
   bool HasTargets() const;  // of morphs
+  std::vector<const std::vector<MorphTarget>*> Targets() const;  // of each member
   StatusOr<std::optional<Skin>> FindSkin() const;  // what moves the family; empty where nothing does
   TexelScale Scale() const;  // refers to the scene
 };

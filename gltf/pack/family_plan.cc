@@ -27,6 +27,14 @@ void AddReason(const std::string& reason, PrimitiveReport* report) {
   report->reason += (report->reason.empty() ? "" : "; ") + reason;
 }
 
+StatusOr<FamilyStream> StreamOf(const FamilyContext& context, const FamilyMeter& meter, size_t most_bytes) {
+  const Effort effort = context.options->encode.effort;
+  if (!context.HasTargets()) return StreamFamily(meter, effort, most_bytes);
+  LACERTA_ASSIGN_OR_RETURN(const MorphChannels morphs,
+                           MorphChannels::Create(meter, context.Targets(), context.scene->texel_side));
+  return StreamFamily(morphs.meter(), effort, most_bytes, &morphs);
+}
+
 // Whether a stream of the whole family with all attributes is what is stored: it is smaller than `least` bytes, or levels
 // are wanted whatever they take. Makes it the plan then.
 bool PlanStream(const FamilyContext& context, const FamilyMeter& meter, uint64_t least, std::vector<PrimitivePlan>* plans) {
@@ -34,14 +42,13 @@ bool PlanStream(const FamilyContext& context, const FamilyMeter& meter, uint64_t
   const LevelChoice levels = options.encode.levels;
   if (levels == LevelChoice::kNever || options.fallback != Fallback::kDraco) return false;
   if (!options.simplify && levels != LevelChoice::kAlways) return false;
-  if (context.HasTargets()) return false;
   size_t most_bytes = std::numeric_limits<size_t>::max();
   if (levels != LevelChoice::kAlways) {
     const uint64_t json = kDracoJsonBytes * plans->size() + kProgressiveJsonBytes;
     if (least <= json) return false;
     most_bytes = least - json;
   }
-  StatusOr<FamilyStream> stream = StreamFamily(meter, options.encode.effort, most_bytes);
+  StatusOr<FamilyStream> stream = StreamOf(context, meter, most_bytes);
   if (!stream.ok()) {
     for (PrimitivePlan& plan : *plans) AddReason("no stream: " + stream.status().message(), &plan.report);
     return false;
@@ -59,7 +66,8 @@ bool PlanStream(const FamilyContext& context, const FamilyMeter& meter, uint64_t
     report.error = shared->description.errors.back();
     report.target_error = context.Error();
     // The refinement is that of all; the first carries it.
-    report.bytes_after = shared->description.base_lengths[m] + (m == 0 ? shared->bytes.size() - shared->part_sizes[0] : 0);
+    report.bytes_after = shared->description.base_lengths[m] + (m == 0 ? shared->bytes.size() - shared->part_sizes[0] : 0) +
+                          BytesOfTargets(shared->groups[m].targets);
   }
   return true;
 }

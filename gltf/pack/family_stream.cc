@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "draco/attributed_search.h"
+#include "extension/target_channels.h"
 #include "lacerta/attributed_base.h"
 #include "lacerta/surface_distance.h"
 #include "pack/weighted_family.h"
@@ -77,22 +78,32 @@ EncodeReport ReportOf(const AttributedTrial& trial, const FamilyStream& stream, 
 
 // weighted: of a family with a skin.
 StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const SurfaceErrorMeter& meter,
-                                      const FamilyMeter& family, const std::optional<WeightedFamily>& weighted) {
+                                      const FamilyMeter& family, const std::optional<WeightedFamily>& weighted,
+                                      const MorphChannels* morphs) {
   const AttributedStream& stream = trial.stream;
   FamilyStream result;
   result.description.attributes = NamesOf(stream.base);
   if (weighted) result.description.joints = weighted->joints;
   LACERTA_RETURN_IF_ERROR(DescribeLevels(stream, meter, stream.bases.size(), &result.description));
+  std::vector<std::vector<MorphTarget>> targets(stream.bases.size());
+  if (morphs != nullptr) targets = morphs->PlainTargets(stream.base);
   for (size_t g = 0; g < stream.bases.size(); ++g) {
     const Bytes& base = stream.bases[g];
     result.description.base_lengths.push_back(base.size());
     result.bytes.insert(result.bytes.end(), base.begin(), base.end());
     FamilyStream::Group group;
+    group.targets = std::move(targets[g]);
     group.ids.push_back({"POSITION", 0});
     std::vector<AttributeReport> reports;
     for (size_t a = 0; a < stream.base.attributes.size(); ++a) {
       const BaseAttribute& attribute = stream.base.attributes[a];
       if (attribute.in_group[g] == 0) continue;
+      if (const auto channels = ParseTargetChannels(attribute.precision.name); channels.has_value()) {
+        const bool positions = channels->attribute == "POSITION";
+        reports.push_back({attribute.precision.name, 0, trial.errors.attributes[a].rms_99,
+                           positions ? "units in the worst target" : "radians in the worst target"});
+        continue;
+      }
       group.ids.push_back({attribute.precision.name, static_cast<uint32_t>(a + 1)});
       if (weighted && a == weighted->weights) {
         group.ids.push_back({kJointsName, static_cast<uint32_t>(stream.base.attributes.size() + 1)});
@@ -121,7 +132,8 @@ StatusOr<FamilyStream> ToFamilyStream(const AttributedTrial& trial, const Surfac
 
 }  // namespace
 
-StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, size_t most_bytes) {
+StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, size_t most_bytes,
+                                    const MorphChannels* morphs) {
   LACERTA_RETURN_IF_ERROR(family.status());
   if (family.leaves_out()) return Unsupported("has attributes that cannot be interpolated");
   std::optional<WeightedFamily> weighted;
@@ -139,14 +151,18 @@ StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, si
     search.meaning.factors = [&](const AttributedSemiRegularMesh& mesh, size_t attribute) {
       return FactorsInPoses(family, *weighted, mesh, attribute);
     };
-    search.meaning.correct = [&](const AttributedMesh& mesh, uint64_t num_samples, SurfaceErrors* errors) {
-      return MeasureInPoses(family, *weighted, mesh, num_samples, errors);
-    };
+  }
+  search.meaning.correct = [&](const AttributedMesh& mesh, uint64_t num_samples, SurfaceErrors* errors) {
+    if (weighted) LACERTA_RETURN_IF_ERROR(MeasureInPoses(family, *weighted, mesh, num_samples, errors));
+    return morphs == nullptr ? Status() : morphs->Measure(mesh, num_samples, errors);
+  };
+  if (morphs != nullptr) {
+    search.meaning.beside = [&](const AttributedBase& base) { return morphs->BytesOfPlainTargets(base); };
   }
   LACERTA_ASSIGN_OR_RETURN(
       const AttributedTrial trial,
       SmallestAttributedStream(original, meter, weighted ? weighted->targets : family.targets(), search));
-  return ToFamilyStream(trial, meter, family, weighted);
+  return ToFamilyStream(trial, meter, family, weighted, morphs);
 }
 
 }  // namespace lacerta

@@ -14,6 +14,8 @@
 #include "lacerta/gltf.h"
 #include "lacerta/status.h"
 #include "pack/family_meter.h"
+#include "pack/morph_channels.h"
+#include "pack/source.h"
 
 namespace lacerta {
 
@@ -25,6 +27,7 @@ struct FamilyStream {
   struct Group {
     std::vector<DracoAttributeId> ids;
     Primitive base;  // what a stock decoder makes of its part of the base section
+    std::vector<MorphTarget> targets;  // of the base, in plain glTF
   };
   std::vector<Group> groups;  // in the order of the meter's primitives
   std::vector<std::vector<AttributeReport>> reports;  // parallel
@@ -33,8 +36,10 @@ struct FamilyStream {
 // The smallest stream found whose finest level meets the meter's targets and that takes fewer than most_bytes. Fails with
 // kUnsupported, and the reason, where there is none: attributes that cannot be interpolated, too many seams, a shape of
 // which a coarse base tells too little.
+// morphs: whose meter this is, of a family with morph targets.
 StatusOr<FamilyStream> StreamFamily(const FamilyMeter& meter, Effort effort,
-                                    size_t most_bytes = std::numeric_limits<size_t>::max());
+                                    size_t most_bytes = std::numeric_limits<size_t>::max(),
+                                    const MorphChannels* morphs = nullptr);
 
 }  // namespace lacerta
 

@@ -101,10 +101,16 @@ StatusOr<double> MorphMeter::Worst(const std::vector<MorphedPrimitive>& stored) 
   constexpr uint64_t kSamples = 30'000;
   double worst = 0.0;
   for (size_t t = 0; t < targets_.size(); ++t) {
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, targets_[t].Measure(Morphed(stored, t), SurfaceDistanceOptions::RmsOnly(kSamples)));
-    worst = std::max(worst, distance.Rms());
+    LACERTA_ASSIGN_OR_RETURN(const double distance, Distance(t, Morphed(stored, t), kSamples));
+    worst = std::max(worst, distance);
   }
   return worst;
+}
+
+StatusOr<double> MorphMeter::Distance(size_t target, const TriangleMesh& morphed, uint64_t num_samples) const {
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance,
+                           targets_[target].Measure(morphed, SurfaceDistanceOptions::RmsOnly(num_samples)));
+  return distance.Rms();
 }
 
 std::optional<std::vector<MorphTarget>> ReorderTargets(const MorphedPrimitive& morphed, const DracoPrecision& precision,

@@ -40,6 +40,9 @@ class MorphMeter {
   // d_S between the surfaces with one target at weight 1 and all others at 0, of the target where that is largest, mesh units.
   StatusOr<double> Worst(const std::vector<MorphedPrimitive>& stored) const;
 
+  // The same of a surface that is morphed already. target: one of the originals'.
+  StatusOr<double> Distance(size_t target, const TriangleMesh& morphed, uint64_t num_samples) const;
+
  private:
   std::vector<SurfaceDistanceMeter> targets_;
 };

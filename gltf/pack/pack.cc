@@ -130,6 +130,7 @@ StatusOr<NewGeometry> DracoFallback(const EncodedMesh& encoded, uint64_t data_bu
 NewGeometry GroupFallback(const FamilyStream& family, size_t group, uint64_t data_buffer, uint64_t offset,
                           GltfDocument* document) {
   NewGeometry geometry = DescribedGeometry(family.groups[group].base);
+  geometry.targets = TargetAccessors(family.groups[group].targets, document);
   Json ids = Json::object();
   for (const DracoAttributeId& id : family.groups[group].ids) ids[id.name] = id.id;
   const uint64_t view = AddBufferView(data_buffer, offset, family.description.base_lengths[group], document);

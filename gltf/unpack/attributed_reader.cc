@@ -35,6 +35,16 @@ Status CheckAttributes(const ProgressiveStream& announced, const RefinementInfo&
   return Status();
 }
 
+// Values as streams carry them become what glTF says.
+Status ToGltf(const ProgressiveStream& announced, AttributedLevel* level) {
+  for (VertexSoup& group : level->groups) {
+    GatherWeights(announced.joints, &group);
+    LACERTA_ASSIGN_OR_RETURN(SoupTargets targets, TakeTargetChannels(&group));
+    level->targets.push_back(std::move(targets));
+  }
+  return Status();
+}
+
 // The bases alone, where nothing is there to tell their lattices: what is not in a group is left out.
 StatusOr<std::vector<VertexSoup>> DecodeBases(const std::vector<Span<const uint8_t>>& parts,
                                               const ProgressiveStream& announced, const DecodeLimits& limits) {
@@ -70,7 +80,7 @@ StatusOr<AttributedLevel> DecodeAttributedLevel(const GatheredStream& stream, co
     LACERTA_ASSIGN_OR_RETURN(bases.groups, DecodeBases(BaseParts(stream, announced), announced, options.limits));
     bases.is_complete = announced.vertex_counts.size() == 1;
     LACERTA_RETURN_IF_ERROR(CheckCounts(announced, bases));
-    for (VertexSoup& group : bases.groups) GatherWeights(announced.joints, &group);
+    LACERTA_RETURN_IF_ERROR(ToGltf(announced, &bases));
     return bases;
   }
   LACERTA_ASSIGN_OR_RETURN(const RefinementInfo info, ReadRefinementInfo(refinement));
@@ -98,7 +108,7 @@ StatusOr<AttributedLevel> DecodeAttributedLevel(const GatheredStream& stream, co
     result.groups = SplitIntoSoups(level, static_cast<uint32_t>(bases.size()));
   }
   LACERTA_RETURN_IF_ERROR(CheckCounts(announced, result));
-  for (VertexSoup& group : result.groups) GatherWeights(announced.joints, &group);
+  LACERTA_RETURN_IF_ERROR(ToGltf(announced, &result));
   return result;
 }
 

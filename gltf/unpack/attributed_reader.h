@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "extension/progressive.h"
+#include "extension/target_channels.h"
 #include "lacerta/attributed_mesh.h"
 #include "lacerta/gltf.h"
 #include "lacerta/status.h"
@@ -16,7 +17,8 @@
 namespace lacerta {
 
 struct AttributedLevel {
-  std::vector<VertexSoup> groups;  // one per group of the stream
+  std::vector<VertexSoup> groups;  // one per group of the stream, without what is of morph targets
+  std::vector<SoupTargets> targets;  // parallel
   int level = 0;
   bool is_complete = true;  // as far as was asked
   Status refinement;        // why it is not; ok: the data was cut off

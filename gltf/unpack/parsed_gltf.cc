@@ -36,6 +36,11 @@ RefinedGeometry ToArrays(ProgressiveSurface surface) {
                                      static_cast<uint32_t>(values.type)});
     }
   }
+  for (const std::vector<VertexSoup::Attribute>& target : surface.targets) {
+    geometry.targets.emplace_back();
+    for (const VertexSoup::Attribute& offsets : target)
+      geometry.targets.back().push_back({offsets.name, offsets.components, ToAccessor(offsets).bytes});
+  }
   AccessorData indices = MakeIndexAccessor(mesh.triangles, mesh.positions.size());
   geometry.num_indices = indices.count;
   geometry.index_type = static_cast<uint32_t>(indices.type);

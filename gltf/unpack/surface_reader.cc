@@ -101,6 +101,10 @@ StatusOr<ProgressiveSurface> ReadGroup(const GltfDocument& document, const Gathe
   ProgressiveSurface surface;
   surface.surface = {soup.positions, soup.triangles};
   surface.attributes = soup.attributes;
+  surface.targets = decoded.value().targets[static_cast<size_t>(group)];
+  if (surface.targets.size() != ArraySize(primitive, "targets"))
+    return InvalidData("the stream has " + std::to_string(surface.targets.size()) + " morph targets, the primitive " +
+                       std::to_string(ArraySize(primitive, "targets")));
   surface.level = decoded.value().level;
   surface.num_levels = static_cast<int>(announced.vertex_counts.size()) - 1;
   if (surface.level < std::min(options.level.value_or(surface.num_levels), surface.num_levels)) {
@@ -204,6 +208,15 @@ AccessorData ToAccessor(const VertexSoup::Attribute& attribute) {
     if (is_short) data.bytes.push_back(static_cast<uint8_t>(index >> 8));
   }
   return data;
+}
+
+std::vector<MorphTarget> ToTargets(const ProgressiveSurface& surface) {
+  std::vector<MorphTarget> targets;
+  for (const std::vector<VertexSoup::Attribute>& target : surface.targets) {
+    targets.emplace_back();
+    for (const VertexSoup::Attribute& offsets : target) targets.back().push_back({offsets.name, ToAccessor(offsets)});
+  }
+  return targets;
 }
 
 Primitive ToPrimitive(const ProgressiveSurface& surface) {

@@ -9,6 +9,7 @@
 #include "document/primitive.h"
 #include "extension/progressive.h"
 #include "lacerta/gltf.h"
+#include "pack/source.h"
 #include "unpack/attributed_reader.h"
 
 namespace lacerta {
@@ -32,6 +33,9 @@ StatusOr<ProgressiveSurface> ReadSurface(const GltfDocument& document, const Sta
 
 // Values of an attribute that came with a surface: floats, and joints in as few bytes as hold them all.
 AccessorData ToAccessor(const VertexSoup::Attribute& attribute);
+
+// Morph targets of `surface`; empty where it has none.
+std::vector<MorphTarget> ToTargets(const ProgressiveSurface& surface);
 
 // As a primitive: positions, attributes and derived normals of `surface`.
 Primitive ToPrimitive(const ProgressiveSurface& surface);

@@ -106,7 +106,9 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
         result.notes.push_back(PlaceName(document, places[0]) + ": " + surface.value().note);
       Primitive plain = ToPrimitive(surface.value());
       RestoreTangents(&plain);
-      ReplaceGeometry({places[0]}, places, PlainGeometry(plain, &document), &pool, &document);
+      NewGeometry geometry = PlainGeometry(plain, &document);
+      geometry.targets = TargetAccessors(ToTargets(surface.value()), &document);
+      ReplaceGeometry({places[0]}, places, std::move(geometry), &pool, &document);
     } else if (PrimitiveExtension(primitive, kDracoName) != nullptr) {
       StatusOr<Primitive> decoded = ReadPrimitive(document, primitive, options.limits);
       if (!decoded.ok()) return decoded.status().WithContext(PlaceName(document, places[0]));

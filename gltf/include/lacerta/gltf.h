@@ -130,6 +130,8 @@ struct ProgressiveSurface {
   // Of streams that carry attributes: one value per vertex of `surface`, which has a vertex for each side of a seam.
   // WEIGHTS_0 of skins has the sum 1, and JOINTS_0 whole numbers.
   std::vector<VertexSoup::Attribute> attributes;
+  // Of each morph target its attributes (POSITION, NORMAL, TANGENT): three numbers per vertex of `surface`.
+  std::vector<std::vector<VertexSoup::Attribute>> targets;
   bool smooth_normals = false;  // the asset wants normals derived from the surface; else flat shading
   int level = 0;                // of `surface`
   int num_levels = 0;           // levels above the base that the asset announces

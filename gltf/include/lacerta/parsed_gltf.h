@@ -38,13 +38,15 @@ struct RefinedGeometry {
   Bytes positions;           // #V x 3 floats
   Bytes normals;             // #V x 3 floats of length 1; empty where the asset asks for flat shading
   std::vector<RefinedAttribute> attributes;  // all others that the stream carries
+  // Of each morph target its POSITION, NORMAL and TANGENT, as far as the stream has them: floats of three components.
+  std::vector<std::vector<RefinedAttribute>> targets;
   uint64_t num_indices = 0;  // 3 #F
   uint32_t index_type = 0;   // glTF componentType: 5123 (16 bits) or 5125 (32 bits)
   Bytes indices;             // #F x 3
 };
 
 // Decodes the progressive primitives of an asset. `json` is the asset's, or as much of it as matters here:
-// asset.version, extensions, bufferViews (buffer, byteOffset, byteLength), accessors (bufferView, min, max) and meshes.
+// asset.version, extensions, bufferViews (buffer, byteOffset, byteLength), accessors (bufferView, min, max) and meshes (of targets, how many there are).
 // `buffers` are its buffers in their order; they are only read. UnpackOptions::folder is not used. References that lead
 // nowhere and damaged streams end in `from_fallback`; fails with kInvalidArgument for a negative level, with
 // kInvalidData or kUnsupported where the JSON is at fault or a primitive has neither a usable stream nor a fallback.

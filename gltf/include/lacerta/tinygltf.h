@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <locale>
 #include <map>
 #include <optional>
@@ -132,16 +133,31 @@ inline void WriteView(const tinygltf::BufferView& view, std::ostream* out) {
        << ",\"byteLength\":" << view.byteLength << '}';
 }
 
-inline void WritePrimitive(const tinygltf::Primitive& primitive, std::ostream* out) {
-  *out << "{\"attributes\":{";
+inline void WriteReferences(const std::map<std::string, int>& accessors, std::ostream* out) {
+  *out << '{';
   const char* separator = "";
-  for (const auto& [name, accessor] : primitive.attributes) {
+  for (const auto& [name, accessor] : accessors) {
     *out << std::exchange(separator, ",");
     WriteString(name, out);
     *out << ':' << accessor;
   }
   *out << '}';
+}
+
+inline void WritePrimitive(const tinygltf::Primitive& primitive, std::ostream* out) {
+  const char* separator = "";
+  *out << "{\"attributes\":";
+  WriteReferences(primitive.attributes, out);
   if (primitive.indices >= 0) *out << ",\"indices\":" << primitive.indices;
+  if (!primitive.targets.empty()) {
+    *out << ",\"targets\":[";
+    separator = "";
+    for (const std::map<std::string, int>& target : primitive.targets) {
+      *out << std::exchange(separator, ",");
+      WriteReferences(target, out);
+    }
+    *out << ']';
+  }
   *out << ',';
   WriteExtensions(primitive.extensions, out);
   *out << '}';
@@ -207,6 +223,18 @@ inline int AddAccessor(const Bytes& bytes, int component_type, int type, uint64_
   return static_cast<int>(model->accessors.size()) - 1;
 }
 
+// Of rows of three floats, at least one.
+inline void SetBounds(const Bytes& values, tinygltf::Accessor* accessor) {
+  std::vector<float> numbers(values.size() / sizeof(float));
+  std::memcpy(numbers.data(), values.data(), numbers.size() * sizeof(float));
+  accessor->minValues.assign(numbers.begin(), numbers.begin() + 3);
+  accessor->maxValues = accessor->minValues;
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    accessor->minValues[i % 3] = std::min(accessor->minValues[i % 3], static_cast<double>(numbers[i]));
+    accessor->maxValues[i % 3] = std::max(accessor->maxValues[i % 3], static_cast<double>(numbers[i]));
+  }
+}
+
 inline void ShowGeometry(const RefinedGeometry& geometry, tinygltf::Model* model) {
   std::map<std::string, int> attributes;
   const int position = AddAccessor(geometry.positions, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
@@ -225,6 +253,15 @@ inline void ShowGeometry(const RefinedGeometry& geometry, tinygltf::Model* model
     attributes[attribute.name] = AddAccessor(attribute.values, static_cast<int>(attribute.component_type), type,
                                              geometry.num_vertices, TINYGLTF_TARGET_ARRAY_BUFFER, model);
   }
+  std::vector<std::map<std::string, int>> targets;
+  for (const std::vector<RefinedAttribute>& target : geometry.targets) {
+    targets.emplace_back();
+    for (const RefinedAttribute& offsets : target) {
+      targets.back()[offsets.name] = AddAccessor(offsets.values, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
+                                                 geometry.num_vertices, TINYGLTF_TARGET_ARRAY_BUFFER, model);
+      if (offsets.name == "POSITION") SetBounds(offsets.values, &model->accessors.back());
+    }
+  }
   const int indices = AddAccessor(geometry.indices, static_cast<int>(geometry.index_type), TINYGLTF_TYPE_SCALAR,
                                   geometry.num_indices, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, model);
   for (const PrimitiveIndex& index : geometry.primitives) {
@@ -232,6 +269,7 @@ inline void ShowGeometry(const RefinedGeometry& geometry, tinygltf::Model* model
         model->meshes[static_cast<size_t>(index.mesh)].primitives[static_cast<size_t>(index.primitive)];
     primitive.attributes = attributes;
     primitive.indices = indices;
+    primitive.targets = targets;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     primitive.extensions.erase(kProgressive);
     primitive.extensions.erase(kDraco);
@@ -261,7 +299,7 @@ inline std::string Describe(const tinygltf::Model& model, const RefinedGeometry&
 }  // namespace tinygltf_internal
 
 // Gives every primitive with LACERTA_mesh_progressive the geometry of its stream: new accessors for POSITION, for the
-// indices, for what else the stream carries and, where the extension says so, for NORMAL, in a new buffer at the end of the model. The primitive loses
+// indices, for what else the stream carries, morph targets among it, and, where the extension says so, for NORMAL, in a new buffer at the end of the model. The primitive loses
 // the extension, and KHR_draco_mesh_compression with it; both leave extensionsUsed and extensionsRequired when nothing
 // uses them any more. All else stays as it is, the stream's bytes and the accessors of the fallback included.
 // Primitives whose stream is damaged, or does not fit the fallback any more, keep their fallback and the extension, and
