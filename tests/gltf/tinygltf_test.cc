@@ -9,6 +9,7 @@
 #include <map>
 
 #include "decoder/smooth_normals.h"
+#include "gltf/morphed_asset.h"
 #include "gltf/test_assets.h"
 
 namespace lacerta {
@@ -326,6 +327,39 @@ TEST(TinyGltf, DamagedBytesNeverCrash) {
   }
   EXPECT_GE(10 * num_notes, 7 * num_damaged);  // some bits of a Draco base matter to nobody
   EXPECT_LE(num_notes, num_damaged);           // one stream at a time
+}
+
+TEST(TinyGltf, MorphTargetsAreThoseOfTheLevel) {
+  if (!kWithDraco) return;
+  PackOptions options;
+  options.encode.levels = LevelChoice::kAlways;
+  options.encode.effort = Effort::kFast;
+  const Bytes glb = PackGltf(testing::BallWithHills({30, 40, 3, true, false, 0}), options).value().glb;
+  const tinygltf::Model original = Loaded(glb);
+  for (const int level : {0, 2}) {
+    tinygltf::Model model = original;
+    EXPECT_EQ(Refine(&model, level).num_refined, 1);
+    UnpackOptions unpack;
+    unpack.level = level;
+    const GltfDocument unpacked = ParseGltf(UnpackGltf(glb, unpack).value().glb, "").value();
+    const tinygltf::Primitive& got = model.meshes[0].primitives[0];
+    const Json& wanted = unpacked.json["meshes"][0u]["primitives"][0u]["targets"];
+    ASSERT_EQ(got.targets.size(), 3u);
+    for (size_t t = 0; t < got.targets.size(); ++t) {
+      ASSERT_EQ(got.targets[t].size(), 2u);
+      for (const auto& [name, accessor] : got.targets[t]) {
+        const AccessorData data = ReadAccessor(unpacked, wanted[t][name].get<uint64_t>()).value();
+        EXPECT_EQ(AccessorBytes(model, accessor), data.bytes) << name;
+        EXPECT_EQ(model.accessors[static_cast<size_t>(accessor)].minValues.size(), name == "POSITION" ? 3u : 0u);
+      }
+    }
+  }
+  // Fewer targets than the stream has: the fallback stays.
+  tinygltf::Model fewer = original;
+  fewer.meshes[0].primitives[0].targets.pop_back();
+  const RefineResult result = Refine(&fewer);
+  EXPECT_EQ(result.num_refined, 0);
+  EXPECT_THAT(result.notes, ElementsAre(HasSubstr("3 morph targets")));
 }
 
 }  // namespace

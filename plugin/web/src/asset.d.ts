@@ -8,6 +8,7 @@ export interface ProgressiveStream {
   max: number[];
   normals?: 'smooth';
   baseLengths?: number[];
+  /** TARGETS_0_POSITION and the like are of morph targets: three components for each of them. */
   attributes?: string[];
   /** Of a skinned surface: which joint of the skin each component of WEIGHTS_0 belongs to, as the decoder has it. */
   joints?: number[];

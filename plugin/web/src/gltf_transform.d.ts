@@ -12,6 +12,9 @@ export class ProgressiveStreams extends ExtensionProperty {
 }
 export class ProgressiveMesh extends ExtensionProperty {
   getPrimitives(): {stream: number; group: number}[];
+  /** Of morph targets. */
+  getWeights(): number[];
+  setWeights(weights: number[]): this;
   getMaterial(primitive: number): Material | null;
   setMaterial(primitive: number, material: Material | null): this;
 }

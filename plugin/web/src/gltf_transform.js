@@ -7,6 +7,7 @@ import {baseParts, extensionName, parseProgressive, progressivePrimitive} from '
 import {Decoder, instantiate} from './decoder.js';
 import {compile} from './index.js';
 import {baseNames, gatherWeights, spreadWeights} from './joint_weights.js';
+import {takeTargets} from './target_channels.js';
 
 const kDraco = 'KHR_draco_mesh_compression';
 const kComponentBytes = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4};
@@ -36,10 +37,13 @@ export class ProgressiveMesh extends ExtensionProperty {
     this.propertyType = 'ProgressiveMesh';
     this.parentTypes = [PropertyType.NODE];
   }
-  getDefaults() { return Object.assign(super.getDefaults(), {primitives: [], materials: new RefMap()}); }
-  /** [{stream, group, def: the primitive's JSON, accessors: its fallback}] */
+  getDefaults() { return Object.assign(super.getDefaults(), {primitives: [], materials: new RefMap(), weights: []}); }
+  /** [{stream, group, def: the primitive's JSON, accessors: its fallback, targets: those of its morph targets}] */
   getPrimitives() { return this.get('primitives'); }
   setPrimitives(primitives) { return this.set('primitives', primitives); }
+  /** Of morph targets. */
+  getWeights() { return this.get('weights'); }
+  setWeights(weights) { return this.set('weights', weights); }
   getMaterial(primitive) { return this.getRefMap('materials', String(primitive)); }
   setMaterial(primitive, material) { return this.setRefMap('materials', String(primitive), material); }
 }
@@ -53,14 +57,28 @@ function viewBytes({json, resources}, index) {
 
 // An accessor of a fallback, with its bytes packed tightly.
 function takeAccessor(jsonDoc, index) {
-  const {bufferView, byteOffset = 0, sparse, ...def} = jsonDoc.json.accessors[index];
-  if (sparse) throw new Error(`${extensionName}: accessor ${index} of a fallback is sparse`);
-  if (bufferView === undefined) return {def};
-  const size = kComponentBytes[def.componentType] * kComponents[def.type], stride = jsonDoc.json.bufferViews[bufferView].byteStride ?? size;
-  const from = viewBytes(jsonDoc, bufferView), bytes = new Uint8Array(4 * Math.ceil(size * def.count / 4));
-  for (let i = 0; i < def.count; ++i) bytes.set(from.subarray(byteOffset + i * stride, byteOffset + i * stride + size), i * size);
-  return {def, bytes};
+  const {bufferView, byteOffset, sparse, ...def} = jsonDoc.json.accessors[index], {componentType, type, count} = def;
+  const accessor = {def, bytes: takeElements(jsonDoc, {bufferView, byteOffset, componentType, type, count})};
+  if (sparse) {
+    const {indices, values} = sparse;
+    accessor.sparse = {count: sparse.count, indices: takeElements(jsonDoc, {...indices, type: 'SCALAR', count: sparse.count}),
+      values: takeElements(jsonDoc, {...values, componentType, type, count: sparse.count}), componentType: indices.componentType};
+  }
+  return accessor;
 }
+
+function takeElements(jsonDoc, {bufferView, byteOffset = 0, componentType, type, count}) {
+  if (bufferView === undefined) return undefined;
+  const size = kComponentBytes[componentType] * kComponents[type], stride = jsonDoc.json.bufferViews[bufferView].byteStride ?? size;
+  const from = viewBytes(jsonDoc, bufferView), bytes = new Uint8Array(4 * Math.ceil(size * count / 4));
+  for (let i = 0; i < count; ++i) bytes.set(from.subarray(byteOffset + i * stride, byteOffset + i * stride + size), i * size);
+  return bytes;
+}
+
+const mapValues = (object, change) => Object.fromEntries(Object.entries(object).map(([name, value]) => [name, change(value)]));
+// All pieces of bytes of a primitive's fallback.
+const piecesOf = ({accessors, indices, targets}) => [...[accessors, ...targets].flatMap(Object.values), indices]
+  .flatMap(accessor => [accessor?.bytes, accessor?.sparse?.indices, accessor?.sparse?.values]).filter(Boolean);
 
 export class LacertaMeshProgressive extends Extension {
   extensionName = extensionName;
@@ -85,17 +103,18 @@ export class LacertaMeshProgressive extends Extension {
       const primitives = mesh.primitives.map(def => ({def, ...progressivePrimitive(def, progressive)}));
       const marked = primitives.filter(({stream}) => stream !== undefined);
       if (marked.length === 0) return;
-      if (marked.length < primitives.length || mesh.primitives.some(def => def.targets)) {
+      if (marked.length < primitives.length) {
         this.document.getLogger().warn(`[${extensionName}] mesh ${m} has other primitives beside progressive ones; it keeps its fallback alone.`);
         for (const {def} of marked) delete def.extensions[extensionName];
         return;
       }
       for (const primitive of primitives) {
-        const {attributes, indices} = primitive.def;
-        primitive.accessors = Object.fromEntries(Object.entries(attributes).map(([name, index]) => [name, takeAccessor(jsonDoc, index)]));
-        if (indices !== undefined) primitive.indices = takeAccessor(jsonDoc, indices);
+        const {attributes, indices, targets = []} = primitive.def, take = index => takeAccessor(jsonDoc, index);
+        primitive.accessors = mapValues(attributes, take);
+        primitive.targets = targets.map(target => mapValues(target, take));
+        if (indices !== undefined) primitive.indices = take(indices);
       }
-      taken.meshes.set(m, {name: mesh.name, extras: mesh.extras, primitives});
+      taken.meshes.set(m, {name: mesh.name, extras: mesh.extras, weights: mesh.weights, primitives});
       mesh.primitives = [];
     });
     (json.nodes ?? []).forEach((node, n) => {
@@ -112,8 +131,8 @@ export class LacertaMeshProgressive extends Extension {
     const root = new ProgressiveStreams(this.document.getGraph(), 'streams').setExtensionJson(taken.extension).setData(taken.data);
     this.document.getRoot().setExtension(extensionName, root);
     const made = new Map();
-    for (const [m, {name, extras, primitives}] of taken.meshes) {
-      const mesh = new ProgressiveMesh(this.document.getGraph(), name ?? '').setPrimitives(primitives);
+    for (const [m, {name, extras, weights = [], primitives}] of taken.meshes) {
+      const mesh = new ProgressiveMesh(this.document.getGraph(), name ?? '').setPrimitives(primitives).setWeights(weights);
       if (extras) mesh.setExtras(extras);
       primitives.forEach(({def}, i) => { if (def.material !== undefined) mesh.setMaterial(i, context.materials[def.material]); });
       made.set(m, mesh);
@@ -137,7 +156,7 @@ export class LacertaMeshProgressive extends Extension {
     context.otherBufferViews.set(buffer, views);
     const add = bytes => { if (bytes && !views.includes(bytes)) views.push(bytes); };
     // Last, so that the front of the file shows everything coarsely.
-    for (const mesh of this.#meshes()) for (const {accessors, indices} of mesh.getPrimitives()) [...Object.values(accessors), indices].forEach(accessor => add(accessor?.bytes));
+    for (const mesh of this.#meshes()) for (const primitive of mesh.getPrimitives()) piecesOf(primitive).forEach(add);
     add(streams.getData());
     return this;
   }
@@ -151,8 +170,9 @@ export class LacertaMeshProgressive extends Extension {
     const addAccessor = accessor => {
       if (!accessor) return undefined;
       json.accessors ??= [];
-      const bufferView = accessor.bytes && context.otherBufferViewsIndexMap.get(accessor.bytes);
-      json.accessors.push({...(bufferView === undefined ? {} : {bufferView}), ...accessor.def});
+      const {bytes, sparse, def} = accessor, at = piece => ({bufferView: context.otherBufferViewsIndexMap.get(piece)});
+      json.accessors.push({...(bytes && at(bytes)), ...def,
+        ...(sparse && {sparse: {count: sparse.count, indices: {...at(sparse.indices), componentType: sparse.componentType}, values: at(sparse.values)}})});
       return json.accessors.length - 1;
     };
     const baseViews = new Map();
@@ -171,18 +191,18 @@ export class LacertaMeshProgressive extends Extension {
       const mesh = node.getExtension(extensionName);
       if (!mesh) continue;
       if (!written.has(mesh)) {
-        const primitives = mesh.getPrimitives().map(({def, stream, group, accessors, indices}, i) => {
+        const primitives = mesh.getPrimitives().map(({def, stream, group, accessors, indices, targets}, i) => {
           const material = mesh.getMaterial(i), extensions = {...def.extensions};
           if (extensions[kDraco]) {
             extensions[kDraco] = {...extensions[kDraco], bufferView: baseView(stream, group)};
             uses.add(kDraco);
           }
           const {material: unused, ...rest} = def;
-          return {...rest, attributes: Object.fromEntries(Object.entries(accessors).map(([name, accessor]) => [name, addAccessor(accessor)])),
+          return {...rest, attributes: mapValues(accessors, addAccessor), ...(targets.length > 0 && {targets: targets.map(target => mapValues(target, addAccessor))}),
             indices: addAccessor(indices), ...(material ? {material: context.materialIndexMap.get(material)} : {}), extensions};
         });
         json.meshes = [...(json.meshes ?? []), {...(mesh.getName() ? {name: mesh.getName()} : {}), primitives,
-          ...(Object.keys(mesh.getExtras()).length > 0 ? {extras: mesh.getExtras()} : {})}];
+          ...(mesh.getWeights().length > 0 ? {weights: mesh.getWeights()} : {}), ...(Object.keys(mesh.getExtras()).length > 0 ? {extras: mesh.getExtras()} : {})}];
         written.set(mesh, json.meshes.length - 1);
       }
       const def = json.nodes[context.nodeIndexMap.get(node)];
@@ -248,15 +268,21 @@ export function toLevel({level = Infinity, draco3d} = {}) {
       const progressiveMesh = node.getExtension(extensionName);
       if (!progressiveMesh) continue;
       if (!made.has(progressiveMesh)) {
-        const mesh = document.createMesh(progressiveMesh.getName()).setExtras(progressiveMesh.getExtras());
-        progressiveMesh.getPrimitives().forEach(({stream, group}, i) => {
-          const {positions, normals, indices, attributes} = decoded[stream][group];
+        const mesh = document.createMesh(progressiveMesh.getName()).setExtras(progressiveMesh.getExtras()).setWeights(progressiveMesh.getWeights());
+        progressiveMesh.getPrimitives().forEach(({stream, group, targets: announced}, i) => {
+          const {positions, normals, indices} = decoded[stream][group];
+          const {attributes, targets} = takeTargets(decoded[stream][group].attributes ?? {}, positions.length / 3, announced.length);
           const accessor = (type, array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
           const primitive = document.createPrimitive().setMaterial(progressiveMesh.getMaterial(i)).setIndices(accessor('SCALAR', indices))
             .setAttribute('POSITION', accessor('VEC3', positions));
           if (normals) primitive.setAttribute('NORMAL', accessor('VEC3', normals));
           for (const [name, values] of Object.entries(gatherWeights(progressive.streams[stream].joints, attributes))) {
             primitive.setAttribute(name, accessor(kTypes[3 * values.length / positions.length], values));
+          }
+          for (const [t, target] of targets.entries()) {
+            const added = document.createPrimitiveTarget(mesh.getExtras().targetNames?.[t]);
+            for (const [name, offsets] of Object.entries(target)) added.setAttribute(name, accessor('VEC3', offsets));
+            primitive.addTarget(added);
           }
           mesh.addPrimitive(primitive);
         });

@@ -2,6 +2,7 @@
 import {nameInThree, toBase} from './arrays.js';
 import {baseParts} from './asset.js';
 import {baseNames, gatherWeights, spreadWeights} from './joint_weights.js';
+import {takeTargets, targetAttribute} from './target_channels.js';
 
 const isCompact = bytes => bytes.length > 11 && bytes[8] === 0x4c && bytes[11] >> 4 === 1;
 // At most one new geometry per frame, but frames that take long, or none in a hidden page, hold nothing up.
@@ -24,7 +25,7 @@ export class Surface {
   #waiting = [];
 
   /**
-   * options: {index, stream (of parseProgressive), groups: [{objects: meshes, hasFallback, attributes: names in glTF}] by group, decodeBase, pool, three,
+   * options: {index, stream (of parseProgressive), groups: [{objects: meshes, hasFallback, attributes: names in glTF, numTargets}] by group, decodeBase, pool, three,
    * onLevel, onProblem}. A stream without attributes has one group.
    */
   constructor(options) {
@@ -99,9 +100,10 @@ export class Surface {
   async #setBase(bytes) {
     const {groups, decodeBase} = this.#options, parts = baseParts(this.stream);
     for (const [g, {objects, hasFallback, attributes}] of groups.entries()) {
-      if (!hasFallback && !decodeBase) throw new Error('its base is a Draco stream, and no dracoLoader was given');
       const names = baseNames(this.stream), {begin, end} = parts[g];
-      const geometry = hasFallback ? objects[0].geometry : await decodeBase(bytes.slice(begin, end), names, attributes);
+      const isEnough = hasFallback && !names.some(targetAttribute);  // a fallback has its morph targets beside the base
+      if (!isEnough && !decodeBase) throw new Error('its base is a Draco stream, and no dracoLoader was given');
+      const geometry = isEnough ? objects[0].geometry : await decodeBase(bytes.slice(begin, end), names, attributes);
       const base = toBase(geometry, names);
       base.attributes = spreadWeights(this.stream.joints, base.attributes);
       if (this.#isGrouped) await this.#decoder.setBaseGroup(g, base);
@@ -112,7 +114,10 @@ export class Surface {
   // A mesh for each group.
   async #read(level) {
     if (!this.#isGrouped) return [await this.#decoder.read(level, {normals: this.stream.normals === 'smooth'})];
-    return Promise.all(this.#options.groups.map((unused, group) => this.#decoder.read(level, {group})));
+    return Promise.all(this.#options.groups.map(async ({numTargets = 0}, group) => {
+      const mesh = await this.#decoder.read(level, {group});
+      return {...mesh, ...takeTargets(mesh.attributes, mesh.positions.length / 3, numTargets)};
+    }));
   }
 
   // Levels are equal in their counts, states of quality layers are several per level.
@@ -148,7 +153,7 @@ export class Surface {
   }
 
   // Another geometry in the same objects: the frame before shows the old one, the frame after the new one.
-  #replace(objects, {positions, normals, indices, attributes}) {
+  #replace(objects, {positions, normals, indices, attributes, targets = []}) {
     if (objects.length === 0) return;
     const {BufferGeometry, BufferAttribute, Box3, Sphere, Vector3} = this.#options.three;
     const old = objects[0].geometry, geometry = new BufferGeometry();
@@ -161,6 +166,13 @@ export class Surface {
     }
     geometry.setIndex(new BufferAttribute(indices, 1));
     geometry.boundingBox = new Box3(new Vector3(...this.stream.min), new Vector3(...this.stream.max));
+    const reach = new Vector3();  // of morph targets, as GLTFLoader has it
+    for (const target of targets) {
+      geometry.morphTargetsRelative = true;
+      for (const [name, offsets] of Object.entries(target)) (geometry.morphAttributes[nameInThree(name)] ??= []).push(new BufferAttribute(offsets, 3));
+      target.POSITION?.forEach((offset, i) => reach.setComponent(i % 3, Math.max(reach.getComponent(i % 3), Math.abs(offset))));
+    }
+    geometry.boundingBox.expandByVector(reach);
     geometry.boundingSphere = geometry.boundingBox.getBoundingSphere(new Sphere());
     geometry.boundingSphere.radius += this.stream.errors[0];  // coarse levels may stick out of the bounds of the finest
     for (const object of objects) object.geometry = geometry;

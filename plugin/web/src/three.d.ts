@@ -4,7 +4,7 @@ import type {DecoderPool} from './index.js';
 export interface LacertaOptions {
   /** The module `three` itself, as the page imports it. */
   three: object;
-  /** For assets without fallback whose base is a Draco stream. */
+  /** For assets without fallback whose base is a Draco stream, and for morph targets; that of the GLTFLoader if absent. */
   dracoLoader?: object;
   pool?: DecoderPool | Promise<DecoderPool>;
   workers?: number;

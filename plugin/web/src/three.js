@@ -9,6 +9,7 @@ import {GrowingBytes, formatGlb, imageRanges, joined, neededRanges, readHead} fr
 import {createPool} from './inline.js';
 import {putTextures, takeTextures} from './late_textures.js';
 import {ProgressiveModel} from './progressive_model.js';
+import {targetAttribute} from './target_channels.js';
 import {transfer} from './transfer.js';
 
 let sharedPool;
@@ -25,7 +26,7 @@ export class LacertaExtension {
   #materials;  // with their textures, while these are not there
 
   /**
-   * options: {three: the module, dracoLoader (for assets without fallback), pool, workers, pixelError, maxTriangles, source, onModel,
+   * options: {three: the module, dracoLoader (for assets without fallback; GLTFLoader's if absent), pool, workers, pixelError, maxTriangles, source, onModel,
    * images: a promise of the first buffer, where its images are not there yet}
    */
   constructor(parser, options) {
@@ -76,10 +77,13 @@ export class LacertaExtension {
       if (!found) return;
       const {stream, group} = found, {baseLengths = [0]} = this.#progressive.streams[stream];
       if (!byStream.has(stream)) {
-        byStream.set(stream, {index: stream, groups: baseLengths.map(() => ({objects: [], hasFallback: false, attributes: {}}))});
+        byStream.set(stream, {index: stream, groups: baseLengths.map(() => ({objects: [], hasFallback: false, attributes: {}, numTargets: 0}))});
       }
       const entry = byStream.get(stream).groups[group];
-      entry.attributes = primitive.extensions.KHR_draco_mesh_compression?.attributes ?? primitive.attributes;
+      const {attributes, targets = []} = primitive, {attributes: names = []} = this.#progressive.streams[stream];
+      const ofTargets = names.filter(name => targets.some(target => targetAttribute(name) in target));
+      entry.attributes = {...(primitive.extensions.KHR_draco_mesh_compression?.attributes ?? attributes), ...Object.fromEntries(ofTargets.map(name => [name]))};
+      entry.numTargets = targets.length;
       if (!object) return;
       entry.hasFallback ||= hasData(json, primitive);
       entry.objects.push(object);
@@ -93,7 +97,7 @@ export class LacertaExtension {
         if (primitive) add(primitive, object);
       });
     }
-    const {dracoLoader} = this.#options;
+    const dracoLoader = this.#options.dracoLoader ?? this.#parser.extensions?.KHR_draco_mesh_compression?.dracoLoader;
     // attributes: those that the group has; their ids in the stream follow from their place among the names.
     const decodeBase = dracoLoader && ((bytes, names, attributes) => new Promise((resolve, reject) => {
       const present = names.filter(name => name in attributes), types = {position: 'Float32Array'}, ids = {position: 0};

@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
-#include "document/place.h"
-#include "gltf/test_assets.h"
+#include "gltf/morphed_asset.h"
 #include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
 #include "lacerta/surface_distance.h"
@@ -15,41 +13,10 @@
 namespace lacerta {
 namespace {
 
+using testing::BallWithHills;
+using testing::MorphedSurface;
+
 constexpr int kTargets = 4;
-
-// A ball with targets that raise a round hill each; nothing moves elsewhere.
-Bytes BallWithHills() {
-  const TriangleMesh ball = testing::WavySphere(60, 100);
-  testing::AssetBuilder builder;
-  Json primitive = builder.Primitive(ball), targets = Json::array();
-  for (int t = 0; t < kTargets; ++t) {
-    const Vec3f top{std::cos(1.6f * static_cast<float>(t)), std::sin(1.6f * static_cast<float>(t)), 0};
-    std::vector<Vec3f> offsets;
-    for (const Vec3f& p : ball.positions) {
-      const float w = std::max(0.0f, 1 - SquaredNorm(p - top) / 0.36f);
-      offsets.push_back(Normalized(p) * (0.3f * w * w));
-    }
-    targets.push_back({{"POSITION", builder.AddFloats(offsets, true)}});
-  }
-  primitive["targets"] = std::move(targets);
-  builder.document().json["materials"] =
-      Json::array({{{"name", "red"}}});  // without numbers that might be an accessor's
-  builder.AddMesh("ball", Json::array({std::move(primitive)}));
-  return builder.Glb();
-}
-
-// The last mesh's last primitive with one of its targets at weight 1.
-TriangleMesh MorphedSurface(const Bytes& plain, size_t primitive_index, uint64_t target) {
-  const GltfDocument document = ParseGltf(plain, "").value();
-  const Json& json = PrimitiveAt(document, {0, primitive_index});
-  const Primitive primitive = ReadPrimitive(document, json, {}).value();
-  TriangleMesh mesh = Surface(primitive);
-  const AccessorData offsets = ReadAccessor(document, json["targets"][target]["POSITION"].get<uint64_t>()).value();
-  for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    mesh.positions[v] += {offsets.Float(v, 0), offsets.Float(v, 1), offsets.Float(v, 2)};
-  }
-  return mesh;
-}
 
 double WorstError(const Bytes& original, const Bytes& unpacked, size_t primitive, uint64_t num_targets) {
   double worst = 0.0;
@@ -64,6 +31,7 @@ double WorstError(const Bytes& original, const Bytes& unpacked, size_t primitive
 TEST(Morphs, AreSimplifiedWithTheirSurfaceWithinTheError) {
   const Bytes asset = BallWithHills();
   PackOptions options;
+  options.encode.levels = LevelChoice::kNever;
   const PackResult simplified = PackGltf(asset, options).value();
   options.simplify = false;
   const PackResult all = PackGltf(asset, options).value();

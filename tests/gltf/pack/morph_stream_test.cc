@@ -1,0 +1,169 @@
+// Surfaces with morph targets as progressive streams: smaller than simplified ones, within the error with each target, with targets at
+// every level.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <tuple>
+
+#include "gltf/morphed_asset.h"
+#include "lacerta/gltf.h"
+#include "lacerta/parsed_gltf.h"
+#include "lacerta/surface_distance.h"
+
+namespace lacerta {
+namespace {
+
+using testing::MorphedSurface;
+
+constexpr int kTargets = 4;
+
+PackResult Pack(const Bytes& asset, LevelChoice levels) {
+  PackOptions options;
+  options.encode.levels = levels;
+  options.encode.effort = Effort::kFast;
+  return PackGltf(asset, options).value();
+}
+
+const Bytes& Ball() {
+  static const Bytes* const kBall = new Bytes(testing::BallWithHills({60, 100, kTargets, true, true, 0.02f}));
+  return *kBall;
+}
+
+const PackResult& Packed() {
+  static const PackResult* const kPacked = new PackResult(Pack(Ball(), LevelChoice::kWhereTheyPay));
+  return *kPacked;
+}
+
+uint64_t BytesOf(const PackResult& packed) {
+  return packed.report.primitives[0].bytes_after + packed.report.primitives[1].bytes_after;
+}
+
+Bytes Unpacked(std::optional<int> level = std::nullopt) {
+  UnpackOptions options;
+  options.level = level;
+  return UnpackGltf(Packed().glb, options).value().glb;
+}
+
+TriangleMesh BothHalves(const Bytes& plain, std::optional<uint64_t> target) {
+  TriangleMesh both = MorphedSurface(plain, 0, target);
+  const TriangleMesh second = MorphedSurface(plain, 1, target);
+  const auto offset = static_cast<uint32_t>(both.positions.size());
+  both.positions.insert(both.positions.end(), second.positions.begin(), second.positions.end());
+  for (const Triangle& t : second.triangles) both.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  return both;
+}
+
+TEST(MorphStream, TakesLessThanHalfOfWhatSimplifiedDoes) {
+  for (const PrimitiveReport& primitive : Packed().report.primitives)
+    EXPECT_EQ(primitive.storage, PrimitiveStorage::kProgressive) << primitive.reason;
+  const PackResult simplified = Pack(Ball(), LevelChoice::kNever);
+  EXPECT_LT(2 * BytesOf(Packed()), BytesOf(simplified)) << BytesOf(Packed());
+  EXPECT_GT(16 * BytesOf(Packed()), BytesOf(simplified)) << BytesOf(Packed());
+  EXPECT_LT(Packed().glb.size(), simplified.glb.size());
+}
+
+TEST(MorphStream, HoldsItsErrorWithEachTarget) {
+  const Bytes unpacked = Unpacked();
+  const double target_error = Packed().report.primitives[0].target_error;
+  double worst = 0;
+  for (std::optional<uint64_t> target; !target.has_value() || *target < kTargets; target = target.has_value() ? *target + 1 : 0) {
+    worst = std::max(worst, MeasureSurfaceDistance(BothHalves(Ball(), target), BothHalves(unpacked, target)).value().Rms());
+  }
+  EXPECT_LT(worst, 1.02 * target_error);
+  EXPECT_GT(worst, 0.6 * target_error);
+}
+
+TEST(MorphStream, NormalsOfTargetsAreHeld) {
+  bool found = false;
+  for (const AttributeReport& attribute : Packed().report.primitives[0].attributes) {
+    if (attribute.name != "TARGETS_0_NORMAL") continue;
+    found = true;
+    EXPECT_LT(attribute.error, PackOptions().attributes.normal_degrees * 3.1416 / 180);
+    EXPECT_GT(attribute.error, PackOptions().attributes.normal_degrees * 3.1416 / 180 / 10);
+  }
+  EXPECT_TRUE(found);
+}
+
+// Vertices of the halves' border are the same with every target, bit by bit.
+TEST(MorphStream, NoLevelCracks) {
+  const int num_levels = static_cast<int>(Packed().report.primitives[0].encode.levels.size()) - 1;
+  ASSERT_GE(num_levels, 2);
+  size_t before = 0;
+  for (int level = 0; level <= num_levels; ++level) {
+    const Bytes plain = Unpacked(level);
+    const auto num_shared = [&](std::optional<uint64_t> target) {
+      std::set<std::tuple<float, float, float>> points[2];
+      for (size_t half = 0; half < 2; ++half) {
+        for (const Vec3f& p : MorphedSurface(plain, half, target).positions) points[half].insert({p.x, p.y, p.z});
+      }
+      return static_cast<size_t>(
+          std::count_if(points[0].begin(), points[0].end(), [&](const auto& p) { return points[1].count(p) > 0; }));
+    };
+    EXPECT_EQ(num_shared(std::nullopt), num_shared(1));
+    EXPECT_GT(num_shared(1), before);
+    before = num_shared(1);
+  }
+}
+
+TEST(MorphStream, EveryLevelAndTheFallbackHaveTargets) {
+  for (const Bytes& glb :
+       {Packed().glb, Unpacked(0), Unpacked(1), Unpacked()}) {  // the first as readers without the extension see it
+    const GltfDocument document = ParseGltf(glb, "").value();
+    for (uint64_t half = 0; half < 2; ++half) {
+      const Json& json = PrimitiveAt(document, {0, half});
+      const Primitive primitive = ReadPrimitive(document, json, {}).value();
+      ASSERT_EQ(json["targets"].size(), size_t{kTargets});
+      EXPECT_EQ(primitive.Find("TARGETS_0_POSITION"), nullptr);
+      float farthest = 0;
+      for (const Json& target : json["targets"]) {
+        for (const char* const name : {"POSITION", "NORMAL"}) {
+          const AccessorData offsets = ReadAccessor(document, target[name].get<uint64_t>()).value();
+          ASSERT_EQ(offsets.count, primitive.num_vertices);
+          for (uint64_t v = 0; v < offsets.count && name[0] == 'P'; ++v) farthest = std::max(farthest, std::fabs(offsets.Float(v, 0)));
+        }
+      }
+      EXPECT_GT(farthest, 0.01f);
+      EXPECT_LT(farthest, 0.4f);
+    }
+  }
+  EXPECT_TRUE(ValidateGltf(Packed().glb, {}).IsValid());
+}
+
+TEST(MorphStream, LoadersGetTargets) {
+  const GltfDocument document = ParseGltf(Packed().glb, "").value();
+  std::vector<Span<const uint8_t>> buffers;
+  for (const Bytes& buffer : document.buffers) buffers.emplace_back(buffer);
+  const std::vector<RefinedGeometry> geometries = RefineParsedGltf(document.json.dump(), buffers, {}).value();
+  ASSERT_EQ(geometries.size(), 2u);
+  for (const RefinedGeometry& geometry : geometries) {
+    EXPECT_TRUE(geometry.attributes.empty());
+    ASSERT_EQ(geometry.targets.size(), size_t{kTargets});
+    for (const auto& target : geometry.targets) {
+      ASSERT_EQ(target.size(), 2u);
+      EXPECT_EQ(target[0].name, "POSITION");
+      EXPECT_EQ(target[1].name, "NORMAL");
+      for (const RefinedAttribute& offsets : target) EXPECT_EQ(offsets.values.size(), 3 * sizeof(float) * geometry.num_vertices);
+    }
+  }
+}
+
+TEST(MorphStream, AnotherNumberOfTargetsIsNoticed) {
+  GltfDocument document = ParseGltf(Packed().glb, "").value();
+  Json& targets = document.json["meshes"][0u]["primitives"][0u]["targets"];
+  targets.erase(targets.size() - 1);
+  const std::vector<ProgressiveSurface> surfaces = ReadProgressive(FormatGlb(document), {}).value();
+  EXPECT_TRUE(surfaces[0].from_fallback);
+  EXPECT_NE(surfaces[0].note.find("4 morph targets"), std::string::npos) << surfaces[0].note;
+  EXPECT_FALSE(surfaces[1].from_fallback) << surfaces[1].note;
+}
+
+TEST(MorphStream, ManyTargetsAreSeveralAttributes) {
+  const PackResult packed = Pack(testing::BallWithHills({24, 40, 45, false, false, 0}), LevelChoice::kAlways);
+  ASSERT_EQ(packed.report.primitives[0].storage, PrimitiveStorage::kProgressive) << packed.report.primitives[0].reason;
+  EXPECT_EQ(testing::JsonOf(packed.glb)["extensions"]["LACERTA_mesh_progressive"]["streams"][0u]["attributes"],
+            Json::array({"TARGETS_0_POSITION", "TARGETS_42_POSITION"}));
+  EXPECT_EQ(ReadProgressive(packed.glb, {}).value()[0].targets.size(), 45u);
+}
+
+}  // namespace
+}  // namespace lacerta
