@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "gltf/morphed_asset.h"
+#include "gltf/skinned_asset.h"
 #include "lacerta/gltf.h"
 #include "lacerta/parsed_gltf.h"
 #include "lacerta/surface_distance.h"
@@ -163,6 +164,44 @@ TEST(MorphStream, ManyTargetsAreSeveralAttributes) {
   EXPECT_EQ(testing::JsonOf(packed.glb)["extensions"]["LACERTA_mesh_progressive"]["streams"][0u]["attributes"],
             Json::array({"TARGETS_0_POSITION", "TARGETS_42_POSITION"}));
   EXPECT_EQ(ReadProgressive(packed.glb, {}).value()[0].targets.size(), 45u);
+}
+
+// A bumpy arm with a target that makes it thicker, here more and there less.
+Bytes MorphedArm() {
+  shapes::SkinnedSoup arm = shapes::SkinnedCylinder(64, 80);
+  for (Vec3f& p : arm.soup.positions) {
+    const float angle = std::atan2(p.y, p.x);
+    const float scale = 1 + 0.1f * std::sin(p.z) + 0.03f * std::sin(5 * angle + 2 * p.z) + 0.02f * std::sin(5 * p.z);
+    p = {p.x * scale, p.y * scale, p.z};
+  }
+  std::vector<VertexSoup::Attribute>& attributes = arm.soup.attributes;
+  attributes.erase(std::remove_if(attributes.begin(), attributes.end(),
+                                  [](const VertexSoup::Attribute& a) { return a.name == "NORMAL"; }),
+                   attributes.end());
+  GltfDocument document = ParseGltf(testing::SkinnedCylinderAsset(arm, 60.0, false), "").value();
+  const std::vector<Vec3f> positions = Surface(ReadPrimitive(document, PrimitiveAt(document, {0, 0}), {}).value()).positions;
+  std::vector<Vec3f> offsets;
+  for (const Vec3f& p : positions) offsets.push_back(Vec3f{p.x, p.y, 0} * (0.2f + 0.1f * std::sin(2 * p.z)));
+  const uint64_t accessor =
+      AddAccessor(MakeAccessor(MakeFloatAccessor(offsets), AccessorUse::kAttribute, true, &document), &document);
+  PrimitiveAt(&document, {0, 0})["targets"] = Json::array({{{"POSITION", accessor}}});
+  EXPECT_TRUE(MergeBuffers(&document).ok());
+  return FormatGlb(document);
+}
+
+TEST(MorphStream, SkinsMayHaveTargets) {
+  const Bytes asset = MorphedArm();
+  const PackResult packed = Pack(asset, LevelChoice::kWhereTheyPay);
+  const PrimitiveReport& report = packed.report.primitives[0];
+  ASSERT_EQ(report.storage, PrimitiveStorage::kProgressive) << report.reason;
+  EXPECT_EQ(testing::JsonOf(packed.glb)["extensions"]["LACERTA_mesh_progressive"]["streams"][0u]["joints"].size(), 3u);
+  const Bytes unpacked = UnpackGltf(packed.glb, {}).value().glb;
+  const auto error = [](const TriangleMesh& a, const TriangleMesh& b) { return MeasureSurfaceDistance(a, b).value().Rms(); };
+  const double morphed = error(MorphedSurface(asset, 0, 0), MorphedSurface(unpacked, 0, 0));
+  const double posed = error(testing::PosedAt(asset, 0, 1.0, 0), testing::PosedAt(unpacked, 0, 1.0, 0));
+  EXPECT_LT(morphed, 1.02 * report.target_error);
+  EXPECT_LT(posed, 1.05 * report.target_error);
+  EXPECT_GT(std::max(morphed, posed), 0.6 * report.target_error);
 }
 
 }  // namespace

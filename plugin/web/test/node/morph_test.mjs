@@ -36,8 +36,8 @@ async function writeMorphedTorus(path, around = 160, across = 80) {
   }
   const accessor = (type, array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
   const primitive = document.createPrimitive().setIndices(accessor('SCALAR', Uint32Array.from(indices))).setAttribute('POSITION', accessor('VEC3', Float32Array.from(positions)));
-  for (const values of offsets) primitive.addTarget(document.createPrimitiveTarget().setAttribute('POSITION', accessor('VEC3', Float32Array.from(values))));
-  const mesh = document.createMesh().addPrimitive(primitive).setWeights([0.5, 0, 0]).setExtras({targetNames: ['a', 'b', 'c']});
+  for (const [t, values] of offsets.entries()) primitive.addTarget(document.createPrimitiveTarget('abc'[t]).setAttribute('POSITION', accessor('VEC3', Float32Array.from(values))));
+  const mesh = document.createMesh().addPrimitive(primitive).setWeights([0.5, 0, 0]);
   document.createScene().addChild(document.createNode().setMesh(mesh));
   await new NodeIO().write(path, document);
 }
