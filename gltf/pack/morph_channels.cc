@@ -20,7 +20,8 @@ const Attribute* FindIn(const MorphTarget& target, const std::string& name) {
 }
 
 // Targets without the attribute do not move it.
-AccessorData Together(const std::vector<MorphTarget>& targets, size_t first, size_t count, const std::string& name, uint64_t num_vertices) {
+AccessorData Together(const std::vector<MorphTarget>& targets, size_t first, size_t count, const std::string& name,
+                      uint64_t num_vertices) {
   std::vector<float> values(3 * count * num_vertices, 0.0f);
   for (size_t t = 0; t < count; ++t) {
     const Attribute* const offsets = FindIn(targets[first + t], name);
@@ -36,13 +37,16 @@ StatusOr<Primitive> WithChannels(const Primitive& primitive, const std::vector<M
   LACERTA_RETURN_IF_ERROR(WithTargets(primitive, targets).status());
   Primitive result = primitive;
   for (const char* const name : kNames) {
-    if (std::none_of(targets.begin(), targets.end(), [&](const MorphTarget& t) { return FindIn(t, name) != nullptr; })) continue;
+    if (std::none_of(targets.begin(), targets.end(), [&](const MorphTarget& t) { return FindIn(t, name) != nullptr; }))
+      continue;
     for (size_t first = 0; first < targets.size(); first += kMostTargetsTogether) {
       const size_t count = std::min(kMostTargetsTogether, targets.size() - first);
-      result.attributes.push_back({NameOf({first, name}), Together(targets, first, count, name, primitive.num_vertices)});
+      result.attributes.push_back(
+          {NameOf({first, name}), Together(targets, first, count, name, primitive.num_vertices)});
     }
   }
-  if (result.attributes.size() == primitive.attributes.size()) return Unsupported("has morph targets without attributes");
+  if (result.attributes.size() == primitive.attributes.size())
+    return Unsupported("has morph targets without attributes");
   return result;
 }
 
@@ -57,7 +61,8 @@ bool IsOfDirections(const MeshAttribute& attribute) {
 
 // With target `t` of an attribute at weight 1. Vertices where offsets have seams are several.
 TriangleMesh Morphed(const AttributedMesh& mesh, const MeshAttribute& offsets, size_t t) {
-  std::vector<uint32_t> vertex_of(offsets.num_values(), kNone), at(offsets.num_values(), kNone), still(mesh.surface.positions.size(), kNone);
+  std::vector<uint32_t> vertex_of(offsets.num_values(), kNone), at(offsets.num_values(), kNone),
+      still(mesh.surface.positions.size(), kNone);
   TriangleMesh result;
   for (size_t f = 0; f < mesh.surface.triangles.size(); ++f) {
     Triangle triangle;
@@ -106,7 +111,8 @@ void DropUpTo(double nothing, std::vector<float>* offsets) {
 
 }  // namespace
 
-StatusOr<MorphChannels> MorphChannels::Create(const FamilyMeter& plain, const std::vector<const std::vector<MorphTarget>*>& targets,
+StatusOr<MorphChannels> MorphChannels::Create(const FamilyMeter& plain,
+                                              const std::vector<const std::vector<MorphTarget>*>& targets,
                                               uint64_t texel_side) {
   LACERTA_RETURN_IF_ERROR(plain.status());
   MorphChannels result;
@@ -119,18 +125,21 @@ StatusOr<MorphChannels> MorphChannels::Create(const FamilyMeter& plain, const st
       result.primitives_.push_back(primitive);
       continue;
     }
-    if (num_targets > 0 && targets[m]->size() != num_targets) return Unsupported("its parts have unlike numbers of morph targets");
+    if (num_targets > 0 && targets[m]->size() != num_targets)
+      return Unsupported("its parts have unlike numbers of morph targets");
     num_targets = targets[m]->size();
     LACERTA_ASSIGN_OR_RETURN(Primitive with, WithChannels(primitive, *targets[m]));
     result.primitives_.push_back(std::move(with));
   }
-  result.meter_ = std::make_unique<const FamilyMeter>(PointersTo(result.primitives_), plain.error(), plain.attribute_targets(), texel_side,
-                                                      plain.texels_per_unit(), plain.skin());
+  result.meter_ =
+      std::make_unique<const FamilyMeter>(PointersTo(result.primitives_), plain.error(), plain.attribute_targets(),
+                                          texel_side, plain.texels_per_unit(), plain.skin());
   LACERTA_RETURN_IF_ERROR(result.meter_->status());
   LACERTA_ASSIGN_OR_RETURN(result.positions_, MorphMeter::Create(originals));
   const AttributedMesh directions = DirectionsApart(result.meter_->original());
   if (!directions.attributes.empty()) {
-    LACERTA_ASSIGN_OR_RETURN(result.directions_, SurfaceErrorMeter::Create(directions, static_cast<double>(texel_side)));
+    LACERTA_ASSIGN_OR_RETURN(result.directions_,
+                             SurfaceErrorMeter::Create(directions, static_cast<double>(texel_side)));
   }
   return result;
 }
@@ -149,9 +158,10 @@ Status MorphChannels::Measure(const AttributedMesh& mesh, uint64_t num_samples, 
     if (IsOfPositions(attribute)) {
       double worst = 0.0;
       for (size_t t = 0; t < num_targets; ++t) {
-        LACERTA_ASSIGN_OR_RETURN(const double distance,
-                                 positions_->Distance(ParseTargetChannels(attribute.name)->first + t, Morphed(mesh, attribute, t),
-                                                      std::max(num_samples / kShare, kFewest)));
+        LACERTA_ASSIGN_OR_RETURN(
+            const double distance,
+            positions_->Distance(ParseTargetChannels(attribute.name)->first + t, Morphed(mesh, attribute, t),
+                                 std::max(num_samples / kShare, kFewest)));
         worst = std::max(worst, distance);
       }
       error.rms = error.rms_99 = worst;
@@ -180,7 +190,8 @@ std::vector<std::vector<MorphTarget>> MorphChannels::PlainTargets(const Attribut
       if (attribute.in_group[g] == 0 || !ParseTargetChannels(attribute.precision.name).has_value()) continue;
       const uint32_t n = attribute.precision.components;
       VertexSoup::Attribute values{attribute.precision.name, attribute.precision.kind, n, {}};
-      for (size_t i = first_vertex * n; i < end * n; ++i) values.values.push_back(static_cast<float>(attribute.values[i]) * attribute.precision.step);
+      for (size_t i = first_vertex * n; i < end * n; ++i)
+        values.values.push_back(static_cast<float>(attribute.values[i]) * attribute.precision.step);
       soup.attributes.push_back(std::move(values));
     }
     first_vertex = end;

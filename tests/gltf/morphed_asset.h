@@ -37,7 +37,8 @@ inline std::vector<Vec3f> HillOffsets(const TriangleMesh& ball, int target) {
 inline Bytes BallWithHills(const HillOptions& options = {}) {
   TriangleMesh ball = WavySphere(options.rings, options.sectors);
   for (Vec3f& p : ball.positions) {
-    p *= 1 + options.bumps * (std::sin(5 * p.x + 2 * p.y) + std::sin(7 * p.z - 3 * p.x) + 0.5f * std::sin(15 * p.y + 4 * p.z));
+    p *= 1 + options.bumps *
+                 (std::sin(5 * p.x + 2 * p.y) + std::sin(7 * p.z - 3 * p.x) + 0.5f * std::sin(15 * p.y + 4 * p.z));
   }
   const std::vector<Vec3f> normals = SmoothNormals(ball.positions, ball.triangles);
   AssetBuilder builder;
@@ -54,7 +55,8 @@ inline Bytes BallWithHills(const HillOptions& options = {}) {
         vertices.push_back(v);
         part.positions.push_back(ball.positions[v]);
       }
-      part.triangles.push_back({static_cast<uint32_t>(at[t[0]]), static_cast<uint32_t>(at[t[1]]), static_cast<uint32_t>(at[t[2]])});
+      part.triangles.push_back(
+          {static_cast<uint32_t>(at[t[0]]), static_cast<uint32_t>(at[t[1]]), static_cast<uint32_t>(at[t[2]])});
     }
     const auto pick = [&](const std::vector<Vec3f>& all) {
       std::vector<Vec3f> own;

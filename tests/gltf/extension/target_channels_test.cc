@@ -11,8 +11,9 @@ TEST(TargetChannels, NamesTellTheFirstTarget) {
   ASSERT_TRUE(channels.has_value());
   EXPECT_EQ(channels->first, 42u);
   EXPECT_EQ(channels->attribute, "NORMAL");
-  for (const char* const other : {"", "NORMAL", "TARGETS_", "TARGETS_POSITION", "TARGETS_x_POSITION", "TARGETS_0_COLOR_0", "TARGETS_00_NORMAL",
-                                  "TARGETS_-1_NORMAL", "TARGETS_99999999999999999999_NORMAL", "TARGET_0/POSITION", "_TARGETS_0_POSITION"}) {
+  for (const char* const other :
+       {"", "NORMAL", "TARGETS_", "TARGETS_POSITION", "TARGETS_x_POSITION", "TARGETS_0_COLOR_0", "TARGETS_00_NORMAL",
+        "TARGETS_-1_NORMAL", "TARGETS_99999999999999999999_NORMAL", "TARGET_0/POSITION", "_TARGETS_0_POSITION"}) {
     EXPECT_FALSE(ParseTargetChannels(other).has_value()) << other;
   }
 }
@@ -50,7 +51,8 @@ TEST(TargetChannels, MissingAndRepeatedOnesAreRefused) {
   twice.attributes[2].name = "TARGETS_1_POSITION";
   fewer_normals.attributes[3].components = 6;
   odd.attributes[2].components = 2;
-  for (VertexSoup* soup : {&gap, &twice, &fewer_normals, &odd}) EXPECT_EQ(TakeTargetChannels(soup).status().code(), StatusCode::kInvalidData);
+  for (VertexSoup* soup : {&gap, &twice, &fewer_normals, &odd})
+    EXPECT_EQ(TakeTargetChannels(soup).status().code(), StatusCode::kInvalidData);
   VertexSoup none;
   EXPECT_TRUE(TakeTargetChannels(&none).value().empty());
 }

@@ -1,5 +1,5 @@
-// Surfaces with morph targets as progressive streams: smaller than simplified ones, within the error with each target, with targets at
-// every level.
+// Surfaces with morph targets as progressive streams: smaller than simplified ones, within the error with each target,
+// with targets at every level.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -67,8 +67,10 @@ TEST(MorphStream, HoldsItsErrorWithEachTarget) {
   const Bytes unpacked = Unpacked();
   const double target_error = Packed().report.primitives[0].target_error;
   double worst = 0;
-  for (std::optional<uint64_t> target; !target.has_value() || *target < kTargets; target = target.has_value() ? *target + 1 : 0) {
-    worst = std::max(worst, MeasureSurfaceDistance(BothHalves(Ball(), target), BothHalves(unpacked, target)).value().Rms());
+  for (std::optional<uint64_t> target; !target.has_value() || *target < kTargets;
+       target = target.has_value() ? *target + 1 : 0) {
+    worst =
+        std::max(worst, MeasureSurfaceDistance(BothHalves(Ball(), target), BothHalves(unpacked, target)).value().Rms());
   }
   EXPECT_LT(worst, 1.02 * target_error);
   EXPECT_GT(worst, 0.6 * target_error);
@@ -120,7 +122,8 @@ TEST(MorphStream, EveryLevelAndTheFallbackHaveTargets) {
         for (const char* const name : {"POSITION", "NORMAL"}) {
           const AccessorData offsets = ReadAccessor(document, target[name].get<uint64_t>()).value();
           ASSERT_EQ(offsets.count, primitive.num_vertices);
-          for (uint64_t v = 0; v < offsets.count && name[0] == 'P'; ++v) farthest = std::max(farthest, std::fabs(offsets.Float(v, 0)));
+          for (uint64_t v = 0; v < offsets.count && name[0] == 'P'; ++v)
+            farthest = std::max(farthest, std::fabs(offsets.Float(v, 0)));
         }
       }
       EXPECT_GT(farthest, 0.01f);
@@ -143,7 +146,8 @@ TEST(MorphStream, LoadersGetTargets) {
       ASSERT_EQ(target.size(), 2u);
       EXPECT_EQ(target[0].name, "POSITION");
       EXPECT_EQ(target[1].name, "NORMAL");
-      for (const RefinedAttribute& offsets : target) EXPECT_EQ(offsets.values.size(), 3 * sizeof(float) * geometry.num_vertices);
+      for (const RefinedAttribute& offsets : target)
+        EXPECT_EQ(offsets.values.size(), 3 * sizeof(float) * geometry.num_vertices);
     }
   }
 }
@@ -179,7 +183,8 @@ Bytes MorphedArm() {
                                   [](const VertexSoup::Attribute& a) { return a.name == "NORMAL"; }),
                    attributes.end());
   GltfDocument document = ParseGltf(testing::SkinnedCylinderAsset(arm, 60.0, false), "").value();
-  const std::vector<Vec3f> positions = Surface(ReadPrimitive(document, PrimitiveAt(document, {0, 0}), {}).value()).positions;
+  const std::vector<Vec3f> positions =
+      Surface(ReadPrimitive(document, PrimitiveAt(document, {0, 0}), {}).value()).positions;
   std::vector<Vec3f> offsets;
   for (const Vec3f& p : positions) offsets.push_back(Vec3f{p.x, p.y, 0} * (0.2f + 0.1f * std::sin(2 * p.z)));
   const uint64_t accessor =
@@ -196,7 +201,9 @@ TEST(MorphStream, SkinsMayHaveTargets) {
   ASSERT_EQ(report.storage, PrimitiveStorage::kProgressive) << report.reason;
   EXPECT_EQ(testing::JsonOf(packed.glb)["extensions"]["LACERTA_mesh_progressive"]["streams"][0u]["joints"].size(), 3u);
   const Bytes unpacked = UnpackGltf(packed.glb, {}).value().glb;
-  const auto error = [](const TriangleMesh& a, const TriangleMesh& b) { return MeasureSurfaceDistance(a, b).value().Rms(); };
+  const auto error = [](const TriangleMesh& a, const TriangleMesh& b) {
+    return MeasureSurfaceDistance(a, b).value().Rms();
+  };
   const double morphed = error(MorphedSurface(asset, 0, 0), MorphedSurface(unpacked, 0, 0));
   const double posed = error(testing::PosedAt(asset, 0, 1.0, 0), testing::PosedAt(unpacked, 0, 1.0, 0));
   EXPECT_LT(morphed, 1.02 * report.target_error);
