@@ -29,7 +29,8 @@ std::optional<AttributeKind> KindOf(const Attribute& attribute, const std::set<s
   if (BeginsWith(name, "COLOR_")) return AttributeKind::kColor;
   if (name == "NORMAL" && attribute.data.components == 3) return AttributeKind::kNormal;
   if (name == "TANGENT" && attribute.data.components == 4) return AttributeKind::kTangent;
-  if (IsTargetAttribute(name) || ParseTargetChannels(name).has_value() || custom.count(name) > 0) return AttributeKind::kGeneric;
+  if (IsTargetAttribute(name) || ParseTargetChannels(name).has_value() || custom.count(name) > 0)
+    return AttributeKind::kGeneric;
   return std::nullopt;
 }
 
@@ -168,7 +169,8 @@ ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const A
     } else if (IsCustom(attribute.name)) {
       const double range = std::max(RangeOf(attribute), static_cast<double>(std::numeric_limits<float>::min()));
       result.attributes.push_back(targets.custom * range * std::sqrt(attribute.components));
-    } else if (const auto channels = ParseTargetChannels(attribute.name); channels.has_value() && channels->attribute == "POSITION") {
+    } else if (const auto channels = ParseTargetChannels(attribute.name);
+               channels.has_value() && channels->attribute == "POSITION") {
       result.attributes.push_back(error);  // of the whole surface, with its targets
     } else if (IsTargetAttribute(attribute.name) || channels.has_value()) {
       result.attributes.push_back(targets.normal_degrees * kRadiansPerDegree);

@@ -67,7 +67,8 @@ StatusOr<FamilyCandidate> Simplified(const FamilyContext& context, const FamilyM
   const std::vector<double> bounds = held ? everywhere : std::vector<double>();
   FamilyCandidate candidate;
   if (context.HasTargets()) {
-    LACERTA_ASSIGN_OR_RETURN(MorphedFamily simplified, SimplifyMorphedFamily(meter, context.Targets(), context.scene->texel_side, bounds));
+    LACERTA_ASSIGN_OR_RETURN(MorphedFamily simplified,
+                             SimplifyMorphedFamily(meter, context.Targets(), context.scene->texel_side, bounds));
     candidate = ToCandidate(std::move(simplified.rounded), std::move(simplified.targets));
   } else {
     LACERTA_ASSIGN_OR_RETURN(RoundedFamily simplified, SimplifyFamily(meter, bounds));

@@ -66,8 +66,9 @@ bool PlanStream(const FamilyContext& context, const FamilyMeter& meter, uint64_t
     report.error = shared->description.errors.back();
     report.target_error = context.Error();
     // The refinement is that of all; the first carries it.
-    report.bytes_after = shared->description.base_lengths[m] + (m == 0 ? shared->bytes.size() - shared->part_sizes[0] : 0) +
-                          BytesOfTargets(shared->groups[m].targets);
+    report.bytes_after = shared->description.base_lengths[m] +
+                         (m == 0 ? shared->bytes.size() - shared->part_sizes[0] : 0) +
+                         BytesOfTargets(shared->groups[m].targets);
   }
   return true;
 }

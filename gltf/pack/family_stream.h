@@ -33,10 +33,9 @@ struct FamilyStream {
   std::vector<std::vector<AttributeReport>> reports;  // parallel
 };
 
-// The smallest stream found whose finest level meets the meter's targets and that takes fewer than most_bytes. Fails with
-// kUnsupported, and the reason, where there is none: attributes that cannot be interpolated, too many seams, a shape of
-// which a coarse base tells too little.
-// morphs: whose meter this is, of a family with morph targets.
+// The smallest stream found whose finest level meets the meter's targets and that takes fewer than most_bytes. Fails
+// with kUnsupported, and the reason, where there is none: attributes that cannot be interpolated, too many seams, a
+// shape of which a coarse base tells too little. morphs: whose meter this is, of a family with morph targets.
 StatusOr<FamilyStream> StreamFamily(const FamilyMeter& meter, Effort effort,
                                     size_t most_bytes = std::numeric_limits<size_t>::max(),
                                     const MorphChannels* morphs = nullptr);

@@ -17,7 +17,7 @@
 namespace lacerta {
 
 struct AttributedLevel {
-  std::vector<VertexSoup> groups;  // one per group of the stream, without what is of morph targets
+  std::vector<VertexSoup> groups;    // one per group of the stream, without what is of morph targets
   std::vector<SoupTargets> targets;  // parallel
   int level = 0;
   bool is_complete = true;  // as far as was asked

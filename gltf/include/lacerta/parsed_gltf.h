@@ -46,11 +46,11 @@ struct RefinedGeometry {
 };
 
 // Decodes the progressive primitives of an asset. `json` is the asset's, or as much of it as matters here:
-// asset.version, extensions, bufferViews (buffer, byteOffset, byteLength), accessors (bufferView, min, max) and meshes (of targets, how many there are).
-// `buffers` are its buffers in their order; they are only read. UnpackOptions::folder is not used. References that lead
-// nowhere and damaged streams end in `from_fallback`; fails with kInvalidArgument for a negative level, with
-// kInvalidData or kUnsupported where the JSON is at fault or a primitive has neither a usable stream nor a fallback.
-// Safe on untrusted input.
+// asset.version, extensions, bufferViews (buffer, byteOffset, byteLength), accessors (bufferView, min, max) and meshes
+// (of targets, how many there are). `buffers` are its buffers in their order; they are only read. UnpackOptions::folder
+// is not used. References that lead nowhere and damaged streams end in `from_fallback`; fails with kInvalidArgument for
+// a negative level, with kInvalidData or kUnsupported where the JSON is at fault or a primitive has neither a usable
+// stream nor a fallback. Safe on untrusted input.
 StatusOr<std::vector<RefinedGeometry>> RefineParsedGltf(const std::string& json,
                                                         const std::vector<Span<const uint8_t>>& buffers,
                                                         const UnpackOptions& options);

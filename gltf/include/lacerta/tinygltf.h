@@ -299,13 +299,13 @@ inline std::string Describe(const tinygltf::Model& model, const RefinedGeometry&
 }  // namespace tinygltf_internal
 
 // Gives every primitive with LACERTA_mesh_progressive the geometry of its stream: new accessors for POSITION, for the
-// indices, for what else the stream carries, morph targets among it, and, where the extension says so, for NORMAL, in a new buffer at the end of the model. The primitive loses
-// the extension, and KHR_draco_mesh_compression with it; both leave extensionsUsed and extensionsRequired when nothing
-// uses them any more. All else stays as it is, the stream's bytes and the accessors of the fallback included.
-// Primitives whose stream is damaged, or does not fit the fallback any more, keep their fallback and the extension, and
-// are named in the notes. Bytes of the stream that are missing end in a coarser level and a note. Fails, with the model
-// untouched, with kInvalidArgument for a negative level and with kInvalidData or kUnsupported where a primitive has
-// neither a usable stream nor a fallback. Safe on untrusted models.
+// indices, for what else the stream carries, morph targets among it, and, where the extension says so, for NORMAL, in a
+// new buffer at the end of the model. The primitive loses the extension, and KHR_draco_mesh_compression with it; both
+// leave extensionsUsed and extensionsRequired when nothing uses them any more. All else stays as it is, the stream's
+// bytes and the accessors of the fallback included. Primitives whose stream is damaged, or does not fit the fallback
+// any more, keep their fallback and the extension, and are named in the notes. Bytes of the stream that are missing end
+// in a coarser level and a note. Fails, with the model untouched, with kInvalidArgument for a negative level and with
+// kInvalidData or kUnsupported where a primitive has neither a usable stream nor a fallback. Safe on untrusted models.
 inline StatusOr<RefineResult> RefineModel(tinygltf::Model* model, const RefineOptions& options) {
   namespace internal = tinygltf_internal;
   std::vector<Span<const uint8_t>> buffers;

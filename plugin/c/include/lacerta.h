@@ -79,8 +79,9 @@ typedef struct lacerta_decoder_options {
    * LACERTA_mesh_progressive): the bytes of each group's Draco stream, which together are the base section, and the
    * names of the attributes, at most 32. Copied. NULL and 0 else. Of a skinned surface ("joints" there) WEIGHTS_0 has a
    * component for each joint, here as in what is read; hosts make those of the base's JOINTS_0 and WEIGHTS_0 and set
-   * the groups themselves (lacerta_decoder_set_base_group), even where the library has Draco. Morph targets are attributes with three components for
-   * each of them (TARGETS_0_POSITION and the like), in bases and in what is read. */
+   * the groups themselves (lacerta_decoder_set_base_group), even where the library has Draco. Morph targets are
+   * attributes with three components for each of them (TARGETS_0_POSITION and the like), in bases and in what is read.
+   */
   const uint64_t* base_lengths;
   uint32_t num_groups;
   uint32_t num_attributes;
