@@ -26,7 +26,7 @@ PackResult Pack(const Bytes& asset, LevelChoice levels) {
 }
 
 const Bytes& Ball() {
-  static const Bytes* const kBall = new Bytes(testing::BallWithHills({60, 100, kTargets, true, true, 0.02f}));
+  static const Bytes* const kBall = new Bytes(testing::BallWithHills({44, 72, kTargets, true, true, 0.02f}));
   return *kBall;
 }
 
@@ -172,7 +172,7 @@ TEST(MorphStream, ManyTargetsAreSeveralAttributes) {
 
 // A bumpy arm with a target that makes it thicker, here more and there less.
 Bytes MorphedArm() {
-  shapes::SkinnedSoup arm = shapes::SkinnedCylinder(64, 80);
+  shapes::SkinnedSoup arm = shapes::SkinnedCylinder(48, 64);
   for (Vec3f& p : arm.soup.positions) {
     const float angle = std::atan2(p.y, p.x);
     const float scale = 1 + 0.1f * std::sin(p.z) + 0.03f * std::sin(5 * angle + 2 * p.z) + 0.02f * std::sin(5 * p.z);
