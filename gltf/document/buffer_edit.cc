@@ -176,22 +176,31 @@ Json MakeAccessor(const AccessorData& data, AccessorUse use, bool bounds, GltfDo
   return accessor;
 }
 
-bool SparseIsSmaller(const AccessorData& data) {
-  constexpr uint64_t kJson = 200;  // of a sparse part and its two views
-  const uint64_t size = data.components * ComponentSize(data.type);
-  return StoredSize(data) + kJson < data.count * size;
+namespace {
+
+bool HasNarrowIndices(const AccessorData& data) {
+  return data.count <= uint64_t{std::numeric_limits<uint16_t>::max()} + 1;
 }
 
-uint64_t StoredSize(const AccessorData& data) {
-  const uint64_t size = data.components * ComponentSize(data.type);
-  return std::min<uint64_t>(data.count * size, NonZeroElements(data).size() * (size + sizeof(uint32_t)));
+uint64_t DenseSize(const AccessorData& data) { return data.count * data.components * ComponentSize(data.type); }
+
+uint64_t SparseSize(const AccessorData& data) {
+  constexpr uint64_t kJson = 200;  // of a sparse part and its two views
+  const uint64_t index = HasNarrowIndices(data) ? sizeof(uint16_t) : sizeof(uint32_t);
+  return NonZeroElements(data).size() * (data.components * ComponentSize(data.type) + index) + kJson;
 }
+
+}  // namespace
+
+bool SparseIsSmaller(const AccessorData& data) { return SparseSize(data) < DenseSize(data); }
+
+uint64_t StoredSize(const AccessorData& data) { return std::min(SparseSize(data), DenseSize(data)); }
 
 Json MakeSparseAccessor(const AccessorData& data, bool bounds, GltfDocument* document) {
   std::vector<uint32_t> elements = NonZeroElements(data);
   if (elements.empty() && data.count > 0) elements.push_back(0);  // not every reader knows accessors without any data
   Json accessor = DescribeAccessor(data, bounds);
-  const bool narrow = data.count <= uint64_t{std::numeric_limits<uint16_t>::max()} + 1;
+  const bool narrow = HasNarrowIndices(data);
   const size_t size = data.components * ComponentSize(data.type);
   Bytes indices;
   Bytes values;

@@ -26,7 +26,7 @@ Json MakeAccessor(const AccessorData& data, AccessorUse use, bool bounds, GltfDo
 // most.
 Json MakeSparseAccessor(const AccessorData& data, bool bounds, GltfDocument* document);
 bool SparseIsSmaller(const AccessorData& data);  // with its JSON
-// Bytes of data of the smaller of the two.
+// Bytes of the smaller of the two, with the JSON of a sparse part.
 uint64_t StoredSize(const AccessorData& data);
 // The same without any data: what a compressed primitive shows.
 Json DescribeAccessor(const AccessorData& data, bool bounds);
