@@ -5,14 +5,13 @@
 import {Extension, ExtensionProperty, PropertyType, RefMap} from '@gltf-transform/core';
 import {baseParts, extensionName, parseProgressive, progressivePrimitive} from './asset.js';
 import {Decoder, instantiate} from './decoder.js';
+import {mapValues, piecesOf, takeAccessor, viewBytes} from './fallback_accessors.js';
 import {compile} from './index.js';
 import {baseNames, gatherWeights, spreadWeights} from './joint_weights.js';
 import {takeTargets} from './target_channels.js';
 
 const kDraco = 'KHR_draco_mesh_compression';
-const kComponentBytes = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4};
 const kTypes = {1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4'};
-const kComponents = {SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT2: 4, MAT3: 9, MAT4: 16};
 
 /** All streams of a document: on its root. */
 export class ProgressiveStreams extends ExtensionProperty {
@@ -47,38 +46,6 @@ export class ProgressiveMesh extends ExtensionProperty {
   getMaterial(primitive) { return this.getRefMap('materials', String(primitive)); }
   setMaterial(primitive, material) { return this.setRefMap('materials', String(primitive), material); }
 }
-
-function viewBytes({json, resources}, index) {
-  const view = json.bufferViews[index], buffer = json.buffers[view.buffer];
-  const resource = buffer.uri === undefined ? resources['@glb.bin'] : resources[buffer.uri];
-  const begin = view.byteOffset ?? 0;
-  return resource.subarray(begin, Math.min(begin + view.byteLength, resource.length));
-}
-
-// An accessor of a fallback, with its bytes packed tightly.
-function takeAccessor(jsonDoc, index) {
-  const {bufferView, byteOffset, sparse, ...def} = jsonDoc.json.accessors[index], {componentType, type, count} = def;
-  const accessor = {def, bytes: takeElements(jsonDoc, {bufferView, byteOffset, componentType, type, count})};
-  if (sparse) {
-    const {indices, values} = sparse;
-    accessor.sparse = {count: sparse.count, indices: takeElements(jsonDoc, {...indices, type: 'SCALAR', count: sparse.count}),
-      values: takeElements(jsonDoc, {...values, componentType, type, count: sparse.count}), componentType: indices.componentType};
-  }
-  return accessor;
-}
-
-function takeElements(jsonDoc, {bufferView, byteOffset = 0, componentType, type, count}) {
-  if (bufferView === undefined) return undefined;
-  const size = kComponentBytes[componentType] * kComponents[type], stride = jsonDoc.json.bufferViews[bufferView].byteStride ?? size;
-  const from = viewBytes(jsonDoc, bufferView), bytes = new Uint8Array(4 * Math.ceil(size * count / 4));
-  for (let i = 0; i < count; ++i) bytes.set(from.subarray(byteOffset + i * stride, byteOffset + i * stride + size), i * size);
-  return bytes;
-}
-
-const mapValues = (object, change) => Object.fromEntries(Object.entries(object).map(([name, value]) => [name, change(value)]));
-// All pieces of bytes of a primitive's fallback.
-const piecesOf = ({accessors, indices, targets}) => [...[accessors, ...targets].flatMap(Object.values), indices]
-  .flatMap(accessor => [accessor?.bytes, accessor?.sparse?.indices, accessor?.sparse?.values]).filter(Boolean);
 
 export class LacertaMeshProgressive extends Extension {
   extensionName = extensionName;
