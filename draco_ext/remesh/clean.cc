@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/subdivision.h"
+#include "geometry/close_cracks.h"
 #include "geometry/equal_rows.h"
 
 namespace lacerta {
@@ -12,7 +13,8 @@ namespace {
 
 Status CheckInput(const TriangleMesh& mesh) {
   if (mesh.positions.size() >= kNone) return Unsupported("more than 4,294,967,294 vertices: cut the mesh into parts");
-  if (mesh.triangles.size() > (1u << 30)) return Unsupported("more than 1,073,741,824 triangles: cut the mesh into parts");
+  if (mesh.triangles.size() > (1u << 30))
+    return Unsupported("more than 1,073,741,824 triangles: cut the mesh into parts");
   for (size_t v = 0; v < mesh.positions.size(); ++v) {
     const Vec3f& p = mesh.positions[v];
     if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
@@ -51,22 +53,28 @@ std::vector<bool> RepeatedTriangles(const std::vector<Triangle>& triangles) {
   return repeated;
 }
 
+// The triangles with vertices replaced, but for those that have one twice then.
+std::vector<Triangle> WithVertices(const std::vector<uint32_t>& replaced, const std::vector<Triangle>& triangles) {
+  std::vector<Triangle> result;
+  result.reserve(triangles.size());
+  for (const Triangle& t : triangles) {
+    const Triangle r = {replaced[t[0]], replaced[t[1]], replaced[t[2]]};
+    if (r[0] != r[1] && r[1] != r[2] && r[2] != r[0]) result.push_back(r);
+  }
+  return result;
+}
+
 }  // namespace
 
 StatusOr<CleanedMesh> Clean(const TriangleMesh& mesh) {
   LACERTA_RETURN_IF_ERROR(CheckInput(mesh));
   CleanedMesh result;
-  const std::vector<uint32_t> first = FirstAtPosition(mesh.positions);
-  std::vector<Triangle> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles) {
-    const Triangle welded = {first[t[0]], first[t[1]], first[t[2]]};
-    if (welded[0] == welded[1] || welded[1] == welded[2] || welded[2] == welded[0]) {
-      ++result.report.degenerate_triangles;
-    } else {
-      triangles.push_back(welded);
-    }
-  }
+  std::vector<uint32_t> first = FirstAtPosition(mesh.positions);
+  std::vector<Triangle> triangles = WithVertices(first, mesh.triangles);
+  const std::vector<uint32_t> closed = VerticesWithoutCracks({mesh.positions, triangles});
+  for (uint32_t& v : first) v = closed[v];
+  triangles = WithVertices(closed, triangles);
+  result.report.degenerate_triangles = mesh.triangles.size() - triangles.size();
   const std::vector<bool> repeated = RepeatedTriangles(triangles);
   std::vector<bool> used(mesh.positions.size(), false), referenced(mesh.positions.size(), false);
   for (const Triangle& t : mesh.triangles) {

@@ -11,7 +11,7 @@ namespace lacerta {
 
 // What cleaning did: counts of what was merged or removed.
 struct CleanReport {
-  uint64_t welded_vertices = 0;       // merged with another vertex at exactly the same position
+  uint64_t welded_vertices = 0;       // merged with another vertex at the same position, or beyond a crack of rounding
   uint64_t degenerate_triangles = 0;  // with a repeated vertex, once welded
   uint64_t duplicate_triangles = 0;   // with the same three vertices and orientation as an earlier one
   uint64_t isolated_vertices = 0;     // of no triangle
@@ -22,9 +22,10 @@ struct CleanedMesh {
   CleanReport report;
 };
 
-// Welds vertices of exactly equal position (-0 equals 0), then drops degenerate and duplicate triangles and isolated vertices.
-// The order of what is left is kept. Fails with kInvalidData on a position that is not finite or an index out of range, and
-// where no triangle is left.
+// Welds vertices of exactly equal position (-0 equals 0), then those on borders that are nearer to each other than a
+// millionth of the diagonal, which exporters leave where they compute a vertex twice; then drops degenerate and
+// duplicate triangles and isolated vertices. The order of what is left is kept. Fails with kInvalidData on a position
+// that is not finite or an index out of range, and where no triangle is left.
 StatusOr<CleanedMesh> Clean(const TriangleMesh& mesh);
 
 }  // namespace lacerta

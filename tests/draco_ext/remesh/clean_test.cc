@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -19,7 +20,8 @@ CleanedMesh Cleaned(const TriangleMesh& mesh) {
   return cleaned.ok() ? std::move(cleaned).value() : CleanedMesh();
 }
 
-void ExpectCounts(const CleanReport& report, uint64_t welded, uint64_t degenerate, uint64_t duplicate, uint64_t isolated) {
+void ExpectCounts(const CleanReport& report, uint64_t welded, uint64_t degenerate, uint64_t duplicate,
+                  uint64_t isolated) {
   EXPECT_EQ(report.welded_vertices, welded);
   EXPECT_EQ(report.degenerate_triangles, degenerate);
   EXPECT_EQ(report.duplicate_triangles, duplicate);
@@ -38,8 +40,8 @@ TEST(Clean, LeavesACleanMeshAlone) {
   ExpectCounts(cleaned.report, 0, 0, 0, 0);
 }
 
-TEST(Clean, WeldsEqualPositionsOnly) {
-  const float next = std::nextafter(1.0f, 2.0f);
+TEST(Clean, WeldsEqualPositionsAndNoMore) {
+  const float next = 1.00001f;
   const CleanedMesh cleaned =
       Cleaned({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {next, 0, 0}, {2, 2, 2}},
                {{0, 1, 2}, {3, 5, 4}, {6, 7, 5}}});
@@ -48,15 +50,24 @@ TEST(Clean, WeldsEqualPositionsOnly) {
   ExpectCounts(cleaned.report, 2, 0, 0, 0);
 }
 
+TEST(Clean, WeldsAcrossCracksOfRounding) {
+  const float next = std::nextafter(1.0f, 2.0f);
+  const CleanedMesh cleaned =
+      Cleaned({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {next, 0, 0}, {1, 1, 0}}, {{0, 1, 2}, {3, 4, 2}, {3, 1, 2}}});
+  ExpectSameMesh(cleaned.mesh, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}});
+  ExpectCounts(cleaned.report, 1, 1, 0, 0);
+}
+
 TEST(Clean, MinusZeroIsZero) {
-  const CleanedMesh cleaned = Cleaned({{{0.0f, 0, 0}, {1, -0.0f, 0}, {0, 1, 0}, {-0.0f, 0, -0.0f}, {1, 0, 0}, {0, 0, 1}},
-                                       {{0, 1, 2}, {3, 5, 4}}});
+  const CleanedMesh cleaned = Cleaned(
+      {{{0.0f, 0, 0}, {1, -0.0f, 0}, {0, 1, 0}, {-0.0f, 0, -0.0f}, {1, 0, 0}, {0, 0, 1}}, {{0, 1, 2}, {3, 5, 4}}});
   EXPECT_EQ(cleaned.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 3, 1}}));
   ExpectCounts(cleaned.report, 2, 0, 0, 0);
 }
 
 TEST(Clean, CountsDegenerateTrianglesBeforeAndAfterWelding) {
-  const CleanedMesh cleaned = Cleaned({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}}, {{0, 1, 2}, {0, 0, 2}, {1, 2, 3}}});
+  const CleanedMesh cleaned =
+      Cleaned({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}}, {{0, 1, 2}, {0, 0, 2}, {1, 2, 3}}});
   EXPECT_EQ(cleaned.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
   ExpectCounts(cleaned.report, 1, 2, 0, 0);
 }
@@ -76,8 +87,8 @@ TEST(Clean, DropsRepeatedTrianglesButNotTheirBacks) {
 
 TEST(Clean, DropsVerticesOfNoTriangleAndKeepsTheOrder) {
   // Vertex 1 belongs to nothing, 4 to a degenerate triangle alone, 5 equals vertex 0 but belongs to nothing.
-  const CleanedMesh cleaned = Cleaned({{{0, 0, 0}, {9, 9, 9}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}, {0, 0, 0}},
-                                       {{3, 0, 2}, {4, 4, 0}}});
+  const CleanedMesh cleaned =
+      Cleaned({{{0, 0, 0}, {9, 9, 9}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}, {0, 0, 0}}, {{3, 0, 2}, {4, 4, 0}}});
   ExpectSameMesh(cleaned.mesh, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{2, 0, 1}}});
   ExpectCounts(cleaned.report, 0, 1, 0, 3);
 }
@@ -122,7 +133,8 @@ TEST(Clean, RefusesWhatItCannotRead) {
     EXPECT_THAT(status.message(), HasSubstr("triangle 4 refers to vertex " + std::to_string(index) + " of 12"));
   }
   EXPECT_THAT(Clean({}).status().message(), HasSubstr("no triangle left"));
-  EXPECT_THAT(Clean({{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}}).status().message(), HasSubstr("no triangle left"));
+  EXPECT_THAT(Clean({{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}}).status().message(),
+              HasSubstr("no triangle left"));
 }
 
 }  // namespace
