@@ -135,27 +135,56 @@ Status ReadVertices(const PlyElement& element, Values* values, TriangleMesh* mes
   return Status();
 }
 
-template <typename Values>
-Status ReadFaces(const PlyElement& element, uint64_t num_vertices, Values* values, TriangleMesh* mesh) {
-  const int indices = element.Find({"vertex_indices", "vertex_index"});
-  if (indices < 0 || !element.properties[static_cast<size_t>(indices)].is_list) {
+// Which property of faces or strips lists their vertices.
+StatusOr<size_t> FindIndices(const PlyElement& element) {
+  const int found = element.Find({"vertex_indices", "vertex_index"});
+  if (found < 0 || !element.properties[static_cast<size_t>(found)].is_list) {
     return InvalidData("the faces have no list vertex_indices");
   }
-  if (!PlyTypeIsInteger(element.properties[static_cast<size_t>(indices)].type)) {
+  const auto indices = static_cast<size_t>(found);
+  if (!PlyTypeIsInteger(element.properties[indices].type)) {
     return InvalidData("the list vertex_indices is not of an integer type");
   }
-  mesh->triangles.reserve(static_cast<size_t>(element.count));
-  std::vector<int64_t> corners;
-  for (uint64_t f = 0; f < element.count; ++f) {
-    corners.clear();
+  return indices;
+}
+
+// Calls done(row, vertices) for each row. vertices: -1 for what no index can be.
+template <typename Values, typename Done>
+Status ReadIndexLists(const PlyElement& element, Values* values, const Done& done) {
+  LACERTA_ASSIGN_OR_RETURN(const size_t indices, FindIndices(element));
+  std::vector<int64_t> vertices;
+  for (uint64_t row = 0; row < element.count; ++row) {
+    vertices.clear();
     LACERTA_RETURN_IF_ERROR(ReadRow(element, values, [&](size_t property, double value) {
       // A double holds every index that can be in range.
-      if (static_cast<int>(property) == indices)
-        corners.push_back(std::abs(value) < 1e15 ? static_cast<int64_t>(value) : -1);
+      if (property == indices) vertices.push_back(std::abs(value) < 1e15 ? static_cast<int64_t>(value) : -1);
     }));
-    LACERTA_RETURN_IF_ERROR(AppendPolygon(corners, num_vertices, f, mesh));
+    LACERTA_RETURN_IF_ERROR(done(row, vertices));
   }
   return Status();
+}
+
+template <typename Values>
+Status ReadFaces(const PlyElement& element, uint64_t num_vertices, Values* values, TriangleMesh* mesh) {
+  mesh->triangles.reserve(static_cast<size_t>(element.count));
+  return ReadIndexLists(element, values,
+                        [&](uint64_t face, const std::vector<int64_t>& corners) { return AppendPolygon(corners, num_vertices, face, mesh); });
+}
+
+// Strips as Stanford's tools write them: every vertex makes a triangle with the two before it, each second one turned round; -1 begins
+// a new strip.
+template <typename Values>
+Status ReadStrips(const PlyElement& element, uint64_t num_vertices, Values* values, TriangleMesh* mesh) {
+  return ReadIndexLists(element, values, [&](uint64_t row, const std::vector<int64_t>& vertices) {
+    size_t begin = 0;
+    for (size_t i = 0; i < vertices.size(); ++i) {
+      if (vertices[i] == -1) begin = i + 1;
+      if (i < begin + 2) continue;
+      const size_t turn = (i - begin) % 2;
+      LACERTA_RETURN_IF_ERROR(AppendPolygon({vertices[i - 2 + turn], vertices[i - 1 - turn], vertices[i]}, num_vertices, row, mesh));
+    }
+    return Status();
+  });
 }
 
 template <typename Values>
@@ -181,9 +210,6 @@ Status ReadBody(const PlyHeader& header, Values* values, TriangleMesh* mesh) {
   uint64_t num_vertices = 0;
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") num_vertices = element.count;
-    if (element.name == "tristrips") {
-      return Unsupported("the faces are stored as triangle strips; convert the file to a list of faces first");
-    }
   }
   for (const PlyElement& element : header.elements) {
     if (element.properties.empty()) continue;  // rows without any value take no bytes
@@ -194,6 +220,8 @@ Status ReadBody(const PlyHeader& header, Values* values, TriangleMesh* mesh) {
       status = ReadVertices(element, values, mesh);
     } else if (element.name == "face") {
       status = ReadFaces(element, num_vertices, values, mesh);
+    } else if (element.name == "tristrips") {
+      status = ReadStrips(element, num_vertices, values, mesh);
     } else {
       status = SkipRows(element, values);
     }

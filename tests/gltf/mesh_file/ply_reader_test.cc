@@ -71,6 +71,25 @@ TEST(PlyReader, AcceptsCarriageReturnsAndOtherElements) {
   EXPECT_EQ(mesh.value().positions[1], (Vec3f{2, 0, 0}));
 }
 
+std::string Strips(const std::string& rows) {
+  return "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips " + rows +
+         "\n";
+}
+
+TEST(PlyReader, ReadsTriangleStrips) {
+  const std::string list = "\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n";
+  const StatusOr<TriangleMesh> one = Parse(FromText(Strips("1" + list + "12  0 1 2 3 4 -1 -1 4 3 1 -1 2")));
+  ASSERT_TRUE(one.ok()) << one.status().message();
+  EXPECT_THAT(one.value().triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{2, 1, 3}, Triangle{2, 3, 4}, Triangle{4, 3, 1}));
+  const StatusOr<TriangleMesh> two = Parse(FromText(Strips("2" + list + "4  0 1 2 3\n3  2 3 4\n")));
+  ASSERT_TRUE(two.ok()) << two.status().message();
+  EXPECT_THAT(two.value().triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{2, 1, 3}, Triangle{2, 3, 4}));
+  EXPECT_THAT(MessageOf(Strips("2" + list + "3  0 1 2\n4  1 2 3 5")), AllOf(HasSubstr("line 16"), HasSubstr("index 5"), HasSubstr("5 vertices")));
+  EXPECT_THAT(MessageOf(Strips("1" + list + "4  0 -2 2 3")), HasSubstr("index -2"));
+  EXPECT_THAT(MessageOf(Strips("1" + list + "3  0 -1 2")), HasSubstr("no faces"));
+  EXPECT_FALSE(Parse(FromText(Strips("1" + list + "9  0 1 2"))).ok());
+}
+
 TEST(PlyReader, RefusesEveryTruncation) {
   for (const Bytes& bytes : {FromText(Header("ascii", "4", "2") + kBody),
                              BinaryFile<float>(Header("binary_little_endian", "4", "2"), kLittle),
