@@ -82,7 +82,18 @@ StatusOr<Primitive> ReadPlain(const GltfDocument& document, const Json& primitiv
   return result;
 }
 
-StatusOr<Primitive> ReadDraco(const GltfDocument& document, const Json& extension, const DecodeLimits& limits) {
+// Whether integers stand for fractions is what the accessors say: streams often do not tell.
+void SetNormalized(const GltfDocument& document, const Json& primitive, Primitive* decoded) {
+  const Json* attributes = Find(primitive, "attributes");
+  if (attributes == nullptr || !attributes->is_object()) return;
+  for (Attribute& attribute : decoded->attributes) {
+    const std::optional<uint64_t> index = AsIndex(Find(*attributes, attribute.name.c_str()));
+    const Json* accessor = index.has_value() ? FindElement(document.json, "accessors", *index) : nullptr;
+    if (accessor != nullptr) attribute.data.normalized = IsTrue(Find(*accessor, "normalized"));
+  }
+}
+
+StatusOr<Primitive> ReadDraco(const GltfDocument& document, const Json& primitive, const Json& extension, const DecodeLimits& limits) {
   LACERTA_ASSIGN_OR_RETURN(const uint64_t view, GetIndex(extension, "bufferView"));
   LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(document, view));
   const Json* attributes = Find(extension, "attributes");
@@ -98,6 +109,7 @@ StatusOr<Primitive> ReadDraco(const GltfDocument& document, const Json& extensio
   }
   StatusOr<Primitive> result = DecodeDracoPrimitive(bytes, ids, limits);
   if (!result.ok()) return result.status().WithContext("bufferView " + std::to_string(view));
+  SetNormalized(document, primitive, &result.value());
   return result;
 }
 
@@ -135,7 +147,7 @@ StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& prim
   const Json* extensions = Find(primitive, "extensions");
   const Json* draco = extensions == nullptr ? nullptr : Find(*extensions, "KHR_draco_mesh_compression");
   StatusOr<Primitive> result =
-      draco != nullptr ? ReadDraco(document, *draco, limits) : ReadPlain(document, primitive, mode);
+      draco != nullptr ? ReadDraco(document, primitive, *draco, limits) : ReadPlain(document, primitive, mode);
   if (!result.ok()) return result.status();
   LACERTA_RETURN_IF_ERROR(CheckPositions(result.value()));
   std::vector<Attribute>& attributes = result.value().attributes;
