@@ -164,6 +164,16 @@ class ZeroLevelSearch {
     return step * std::clamp(ratio, 0.4, 2.5);
   }
 
+  struct TriedStep {
+    double step = 0, distortion = 0;
+  };
+
+  // Where the squared distance, taken for a power of the step, is what is wanted.
+  double StepBetween(const TriedStep& met, const TriedStep& missed) const {
+    const double share = std::log(distortion_ / met.distortion) / std::log(missed.distortion / met.distortion);
+    return met.step * std::pow(missed.step / met.step, std::clamp(share, 0.1, 0.9));
+  }
+
   Status MeetRate(Trial* trial) {
     ZeroLevelCandidate& candidate = *trial->candidate;
     const double fit = std::max(candidate.fit_distortion(), 1e-14 * Square(meter_.diagonal()));
@@ -208,6 +218,7 @@ class ZeroLevelSearch {
     std::optional<ZeroLevelStream> best;
     int measurements = 0;
     double best_distortion = 0;
+    TriedStep met, missed;  // the largest step at the target, the smallest beyond it
     for (int i = 0; i < num_tries || (!best->meets_target && i < 2 * num_tries); ++i) {
       LACERTA_ASSIGN_OR_RETURN(ZeroLevelCandidate::Coding coding, candidate.Code(step, descent_rounds, CodingEffort::kFull, target_.base_coding));
       const double distortion = bias * coding.distortion;
@@ -228,7 +239,11 @@ class ZeroLevelSearch {
       if (target_.is_rate) {
         step *= StepRatioForBytes(0.995 * target_.bytes / bytes, candidate) * jitter;
       } else {
-        step = NextStep(step, std::max(distortion, bias * coding.distortion) * 1.005, candidate.fit_distortion()) * jitter;
+        const double cautious = std::max(distortion, bias * coding.distortion) * 1.005;
+        if (cautious <= distortion_ && step > met.step) met = {step, cautious};
+        if (cautious > distortion_ && (missed.step == 0 || step < missed.step)) missed = {step, cautious};
+        const bool is_between = 0 < met.step && met.step < missed.step;
+        step = (is_between ? StepBetween(met, missed) : NextStep(step, cautious, candidate.fit_distortion())) * jitter;
       }
     }
     best->measurements = measurements;
