@@ -61,6 +61,7 @@ class FamilyRounder {
         forecast_(primitives_, attributes_), own_attributes_(attributes_.size(), 0.0),
         indices_(attributes_.size()) {
     correction_.attributes.assign(attributes_.size(), 1.0);
+    least_attributes_.assign(attributes_.size(), 1);
     for (const RoundedAttribute& attribute : attributes_) num_numbers_.push_back(attribute.num_numbers);
     if (!meter.status().ok()) return;
     targets_ = meter.TargetsWith(everywhere);
@@ -115,7 +116,7 @@ class FamilyRounder {
     if (!attribute.is_shown) room = std::min(room, PoseRoom() - Square(positions.distance / meter_.error()));
     if (!(room >= 0.0)) return std::nullopt;
     const auto meets = [&](int level) { return Square(forecast_.Rounded(a, level) / attribute.target) <= room; };
-    int low = attribute.FirstLevel() - 1;  // too coarse
+    int low = std::max(attribute.FirstLevel(), least_attributes_[a]) - 1;  // too coarse
     int high = kMostLevel + 1;
     while (high - low > 1) {
       const int middle = (low + high) / 2;
@@ -272,8 +273,15 @@ class FamilyRounder {
       // Never quite as small as measured: what seems to add nothing is below the precision of the measure.
       return std::max(Square(measured) - Square(own), kLeast * Square(expected)) / std::max(Square(expected), kTiny);
     };
-    correction_.distance =
-        corrected(errors.distance / targets_.distance, own_distance_, positions.distance / targets_.distance);
+    // Where the forecast is far off, a factor is of no use: it may be one of next to nothing. But errors are in proportion to the step.
+    constexpr double kUnforeseen = 3, kNothing = 0.05;
+    const auto finer = [](double measured) { return static_cast<int>(std::ceil(kLevelsPerBit * std::log2(measured))); };
+    const double distance = errors.distance / targets_.distance, expected_distance = positions.distance / targets_.distance;
+    if (distance > std::max(1.0, kUnforeseen * expected_distance)) {  // flat surfaces shrink within their plane
+      least_positions_ = std::max(least_positions_, levels.positions + finer(distance));
+      return;
+    }
+    correction_.distance = corrected(distance, own_distance_, expected_distance);
     if (poses_.has_value()) {
       double expected = Square(positions.distance / targets_.distance);
       for (size_t a = 0; a < attributes_.size(); ++a) {
@@ -283,8 +291,14 @@ class FamilyRounder {
     }
     for (size_t a = 0; a < attributes_.size(); ++a) {
       if (!indices_[a].has_value()) continue;
-      const double expected = std::hypot(forecast_.Rounded(a, levels.attributes[a]), positions.slides[a]) / attributes_[a].target;
-      correction_.attributes[a] = corrected(Ratio(errors, *indices_[a]), own_attributes_[a], expected);
+      const double rounded = forecast_.Rounded(a, levels.attributes[a]) / attributes_[a].target;
+      const double expected = std::hypot(rounded, positions.slides[a] / attributes_[a].target);
+      const double measured = Ratio(errors, *indices_[a]);
+      // What finer rounding does not mend in one go is due to the positions.
+      const bool is_first = least_attributes_[a] == 1 && measured > kUnforeseen * expected;
+      if (measured > std::max(1.0, kUnforeseen * rounded)) least_attributes_[a] = levels.attributes[a] + finer(measured);
+      if (measured > 1.0 && (is_first || expected < kNothing)) continue;
+      correction_.attributes[a] = corrected(measured, own_attributes_[a], expected);
     }
   }
 
@@ -304,6 +318,7 @@ class FamilyRounder {
   double num_positions_ = 1.0;
   std::vector<double> num_numbers_;  // of each attribute
   int least_positions_ = 1;
+  std::vector<int> least_attributes_;  // levels
   Correction correction_;
   std::map<Levels, Trial> trials_;
 };

@@ -63,6 +63,42 @@ TEST(Rounded, PositionsThatSlideUnderTheTextureGetMoreBits) {
   }
 }
 
+// A flat square of 1,600 cells, each with a color of the texture of its own; all but `num_textured` have the same one.
+Primitive FlatSquare(uint32_t num_textured) {
+  constexpr uint32_t kCells = 40;
+  Primitive primitive;
+  std::vector<Vec3f> positions;
+  std::vector<float> texture;
+  for (uint32_t cell = 0; cell < kCells * kCells; ++cell) {
+    const auto x = static_cast<float>(cell % kCells), y = static_cast<float>(cell / kCells);
+    const auto v = static_cast<uint32_t>(positions.size());
+    positions.insert(positions.end(), {{x, y, 0}, {x + 1, y, 0}, {x + 1, y + 1, 0}, {x, y + 1, 0}});
+    const bool is_textured = cell < num_textured;
+    for (int k = 0; k < 4; ++k) texture.insert(texture.end(), {is_textured ? 7.3f + 0.1f * static_cast<float>(k) : 0.0f, is_textured ? 0.3f * x : 0.0f});
+    primitive.triangles.insert(primitive.triangles.end(), {{v, v + 1, v + 2}, {v, v + 2, v + 3}});
+  }
+  primitive.num_vertices = positions.size();
+  primitive.attributes = {{"POSITION", MakeFloatAccessor(positions)}, {"TEXCOORD_0", MakeFloatAccessor(texture, 2)}};
+  return primitive;
+}
+
+// Forecasts know of no error: positions move within the plane, and texture coordinates err on a hundredth of the area, which is left out.
+TEST(Rounded, ErrorsThatNoForecastTellsAreMeasured) {
+  const TexelScale scale = [](size_t, uint64_t set) { return Texels(set); };
+  constexpr double kError = 0.01;
+  for (const uint32_t num_textured : {0u, 16u, 17u}) {
+    const Primitive primitive = FlatSquare(num_textured);
+    const FamilyMeter meter({&primitive}, kError, {}, 1024, scale);
+    const auto rounded = RoundFamily(meter.primitives(), meter);
+    ASSERT_TRUE(rounded.ok()) << rounded.status().message();
+    const SurfaceErrors seen = Seen(primitive, rounded.value().members[0].decoded, scale);
+    EXPECT_LE(seen.distance, 1.02 * kError);
+    EXPECT_LE(seen.attributes[0].rms_99, 1.02 * AttributeTargets().uv_texels);
+    EXPECT_LE(rounded.value().precisions[0].positions.bits, 12);
+    EXPECT_LE(rounded.value().reports[0][0].bits, 14);
+  }
+}
+
 TEST(Rounded, SurfacesWithoutAreaAreHeldToTheirVertices) {
   Primitive primitive = Textured(1.0f);
   primitive.triangles = {{0, 0, 1}};
