@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kWidestCrack = 1.0 / (1 << 20);  // of the diagonal
 
-// The ends of edges of one triangle, in ascending order.
+// The ends of edges that are not of two triangles, in ascending order.
 std::vector<uint32_t> BorderVertices(const std::vector<Triangle>& triangles) {
   std::vector<uint64_t> edges;
   edges.reserve(3 * triangles.size());
@@ -27,7 +27,7 @@ std::vector<uint32_t> BorderVertices(const std::vector<Triangle>& triangles) {
   std::vector<uint32_t> vertices;
   for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
     while (end < edges.size() && edges[end] == edges[begin]) ++end;
-    if (end - begin == 1)
+    if (end - begin != 2)
       vertices.insert(vertices.end(), {static_cast<uint32_t>(edges[begin] >> 32), static_cast<uint32_t>(edges[begin])});
   }
   std::sort(vertices.begin(), vertices.end());

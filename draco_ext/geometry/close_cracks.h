@@ -9,9 +9,10 @@
 
 namespace lacerta {
 
-// For each vertex the one to take in its place: itself, or, at the end of an edge of one triangle, an earlier such
-// vertex that is nearer than a millionth of the diagonal (some roundings of a float). Many CAD systems write STL files
-// with such gaps. Vertices inside of the surface stay, however near. mesh: welded, its indices below #V. O(n log n).
+// For each vertex the one to take in its place: itself, or, at the end of an edge that is not of two triangles, an
+// earlier such vertex that is nearer than a millionth of the diagonal (some roundings of a float). Many CAD systems
+// write STL files with such gaps. Vertices inside of the surface stay, however near. mesh: welded, its indices below
+// #V. O(n log n).
 std::vector<uint32_t> VerticesWithoutCracks(const TriangleMesh& mesh);
 
 }  // namespace lacerta

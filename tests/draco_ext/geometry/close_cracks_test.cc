@@ -57,6 +57,18 @@ TEST(CloseCracks, LeavesTheInsideAlone) {
   EXPECT_EQ(VerticesWithoutCracks(sphere), Unchanged(sphere));
 }
 
+TEST(CloseCracks, ClosesGapsAtEdgesOfMoreThanTwoTriangles) {
+  // Two edges with three triangles each, apart by rounding.
+  TriangleMesh fins;
+  for (const float gap : {0.0f, 1e-7f}) {
+    const auto v = static_cast<uint32_t>(fins.positions.size());
+    const float side = gap > 0 ? 1.0f : -1.0f;
+    fins.positions.insert(fins.positions.end(), {{gap, 0, 0}, {gap, 0, 1}, {side, 0.5f, 0}, {side, 0, 0.5f}, {side, -0.5f, 0}});
+    fins.triangles.insert(fins.triangles.end(), {{v, v + 1, v + 2}, {v, v + 1, v + 3}, {v, v + 1, v + 4}});
+  }
+  EXPECT_EQ(VerticesWithoutCracks(fins), (std::vector<uint32_t>{0, 1, 2, 3, 4, 0, 1, 7, 8, 9}));
+}
+
 TEST(CloseCracks, TakesTheNearestAndTheSameForAll) {
   // Four triangles around a point that each has for itself, on a line of roundings.
   TriangleMesh fan;
