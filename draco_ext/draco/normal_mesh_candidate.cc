@@ -74,12 +74,21 @@ StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface
   return NormalMeshCandidate(std::move(base), std::move(best.mesh));
 }
 
-// The base on a lattice of that step, or of one so much finer that the points at which cuts are closed are no others' too.
+// Whether decoders, who take base vertices at one point of the lattice for joined ones, join the borders of cuts and no others.
+bool NormalMeshCandidate::JoinsTheCuts(const BaseMesh& lattice) const {
+  BaseTags tags = normal_mesh_.mesh.tags;
+  if (tags.joined.empty()) return true;
+  tags.joined = FirstAtSamePoint(lattice.lattice);
+  const Topology& wanted = target_.topologies.front();
+  Topology joined = wanted;
+  return SetTags(tags, &joined).ok() && joined.edges == wanted.edges && joined.master == wanted.master;
+}
+
+// The base on a lattice of that step, or of one so much finer that cuts are closed and nothing else is.
 BaseMesh NormalMeshCandidate::BaseLattice(const TriangleMesh& base, double step) const {
   constexpr int kMostHalvings = 24;
   BaseMesh lattice = RoundToLattice(base, static_cast<float>(step));
-  if (normal_mesh_.mesh.tags.joined.empty()) return lattice;
-  for (int i = 0; i < kMostHalvings && FirstAtSamePoint(lattice.lattice) != normal_mesh_.mesh.tags.joined; ++i) {
+  for (int i = 0; i < kMostHalvings && !JoinsTheCuts(lattice); ++i) {
     step /= 2;
     lattice = RoundToLattice(base, static_cast<float>(step));
   }

@@ -73,6 +73,7 @@ class NormalMeshCandidate {
   TriangleMesh RemeshedSurface() const;
 
  private:
+  bool JoinsTheCuts(const BaseMesh& lattice) const;
   BaseMesh BaseLattice(const TriangleMesh& base, double step) const;
   CodedSurface FirstRounding(const CodingSlope& slope, std::vector<Vec3f>* decoded) const;
   // decoded: becomes what a decoder makes of it.

@@ -253,20 +253,20 @@ StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const Surfa
   LACERTA_ASSIGN_OR_RETURN(const std::vector<int> rungs, ladder.FindBest(progress));
   if (progress) progress(0.8, "meeting the target");
   // Scores are estimates: a few candidates at a time are taken to the target until one meets it, and the better of them is kept.
-  std::optional<ChosenStream> best;
+  StatusOr<ChosenStream> best = InternalError("no base was taken to the target");
   const size_t at_a_time = target.quality_layers > 1 ? 1 : effort.at_a_time;  // with layers the fewest bytes are not all that counts
   for (size_t first = 0; first < std::min(kMost, rungs.size()); first += at_a_time) {
     const size_t count = std::min(at_a_time, rungs.size() - first);
     std::vector<StatusOr<ChosenStream>> met(count, InternalError("not tried"));
     ForEachCandidate(static_cast<double>(surface.surface.mesh().positions.size()), count,
                      [&](size_t i) { met[i] = ladder.Meet(rungs[first + i]); });
-    for (StatusOr<ChosenStream>& tried : met) {
-      LACERTA_ASSIGN_OR_RETURN(ChosenStream chosen, std::move(tried));
-      if (!best || IsBetter(OutcomeOf(chosen.measured), OutcomeOf(best->measured), target)) best = std::move(chosen);
+    for (StatusOr<ChosenStream>& tried : met) {  // one that fails costs only itself
+      const bool is_better = !best.ok() || (tried.ok() && IsBetter(OutcomeOf(tried.value().measured), OutcomeOf(best.value().measured), target));
+      if (is_better) best = std::move(tried);
     }
-    if (best->measured.meets_target) break;
+    if (best.ok() && best.value().measured.meets_target) break;
   }
-  return std::move(*best);
+  return best;
 }
 
 }  // namespace lacerta
