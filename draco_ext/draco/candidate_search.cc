@@ -31,7 +31,7 @@ constexpr int kScoreTries = 2;
 constexpr int kMostDraws = 4, kSettlePasses = 2;  // passes: from a stream near the goal to one at it
 constexpr double kComparable = 0.7;  // dB from the goal: from farther off, extrapolation favors what hardly can reach it
 constexpr double kNearEnough = 0.4;  // dB: typical slopes will do
-constexpr int kMeetTries = 16, kEstimatedTries = 6;
+constexpr int kMeetTries = 16, kEstimatedTries = 6, kSettlingTries = 11;
 constexpr double kStepChange = 1.5;  // between slopes of steps that are tried
 
 }  // namespace
@@ -317,9 +317,9 @@ StatusOr<MeasuredStream> CandidateSearch::MeetQuality(Attempt drawn) {
   values_are_measured_ = true;
   offset_ = 0;
   for (int i = kEstimatedTries; i < kMeetTries && !is_done() && !CannotReach() && !(excess(*best) >= 0 && JumpsOverGoal()); ++i) {
-    const double log_lambda = NextGuess();
-    StatusOr<Attempt> tried = Try(log_lambda, effort_.meet_passes, target_.quality_layers);
+    StatusOr<Attempt> tried = Settle(i < kSettlingTries ? from : std::nullopt);
     if (!tried.ok()) break;
+    const double log_lambda = tried.value().log_lambda;
     values_[log_lambda] = measure(std::move(tried).value());
   }
   const bool meets_target = excess(*best) >= 0;

@@ -171,7 +171,8 @@ class ZeroLevelSearch {
   // Where the squared distance, taken for a power of the step, is what is wanted.
   double StepBetween(const TriedStep& met, const TriedStep& missed) const {
     const double share = std::log(distortion_ / met.distortion) / std::log(missed.distortion / met.distortion);
-    return met.step * std::pow(missed.step / met.step, std::clamp(share, 0.1, 0.9));
+    constexpr double kMiddle = 0.5;  // where nothing is known of the power: no distortion at all, or equal ones
+    return met.step * std::pow(missed.step / met.step, std::isfinite(share) ? std::clamp(share, 0.1, 0.9) : kMiddle);
   }
 
   Status MeetRate(Trial* trial) {

@@ -25,7 +25,7 @@ TEST(AttributedCandidateTest, StreamsMeetTheirTargetsAndLeaveLittleOfThem) {
     const AttributedTrial trial = candidate.Meet(targets, {8, 6, 20'000}).value();
     EXPECT_LE(trial.ratio, 1);
     EXPECT_GT(trial.ratio, 0.7);
-    EXPECT_LT(trial.errors.turned, 1e-3);
+    EXPECT_LT(trial.errors.turned, 2e-3);
     EXPECT_GT(trial.stream.size(), 800u);
     EXPECT_LT(trial.stream.size(), 3000u);  // of a surface of 9216 triangles
     // Bytes grow with quality, but for what the texture costs where positions may slide.
