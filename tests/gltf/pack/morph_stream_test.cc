@@ -2,28 +2,22 @@
 // with targets at every level.
 #include <gtest/gtest.h>
 
-#include <set>
-#include <tuple>
+#include <algorithm>
+#include <cmath>
 
+#include "gltf/halved_stream.h"
 #include "gltf/morphed_asset.h"
 #include "gltf/skinned_asset.h"
-#include "lacerta/gltf.h"
-#include "lacerta/parsed_gltf.h"
 #include "lacerta/surface_distance.h"
 
 namespace lacerta {
 namespace {
 
+using testing::BytesOfHalves;
 using testing::MorphedSurface;
+using testing::PackFast;
 
 constexpr int kTargets = 4;
-
-PackResult Pack(const Bytes& asset, LevelChoice levels) {
-  PackOptions options;
-  options.encode.levels = levels;
-  options.encode.effort = Effort::kFast;
-  return PackGltf(asset, options).value();
-}
 
 const Bytes& Ball() {
   static const Bytes* const kBall = new Bytes(testing::BallWithHills({44, 72, kTargets, true, true, 0.02f}));
@@ -31,35 +25,22 @@ const Bytes& Ball() {
 }
 
 const PackResult& Packed() {
-  static const PackResult* const kPacked = new PackResult(Pack(Ball(), LevelChoice::kWhereTheyPay));
+  static const PackResult* const kPacked = new PackResult(PackFast(Ball(), LevelChoice::kWhereTheyPay));
   return *kPacked;
 }
 
-uint64_t BytesOf(const PackResult& packed) {
-  return packed.report.primitives[0].bytes_after + packed.report.primitives[1].bytes_after;
-}
-
-Bytes Unpacked(std::optional<int> level = std::nullopt) {
-  UnpackOptions options;
-  options.level = level;
-  return UnpackGltf(Packed().glb, options).value().glb;
-}
+Bytes Unpacked(std::optional<int> level = std::nullopt) { return testing::UnpackedAt(Packed().glb, level); }
 
 TriangleMesh BothHalves(const Bytes& plain, std::optional<uint64_t> target) {
-  TriangleMesh both = MorphedSurface(plain, 0, target);
-  const TriangleMesh second = MorphedSurface(plain, 1, target);
-  const auto offset = static_cast<uint32_t>(both.positions.size());
-  both.positions.insert(both.positions.end(), second.positions.begin(), second.positions.end());
-  for (const Triangle& t : second.triangles) both.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-  return both;
+  return testing::Both(MorphedSurface(plain, 0, target), MorphedSurface(plain, 1, target));
 }
 
 TEST(MorphStream, TakesLessThanHalfOfWhatSimplifiedDoes) {
   for (const PrimitiveReport& primitive : Packed().report.primitives)
     EXPECT_EQ(primitive.storage, PrimitiveStorage::kProgressive) << primitive.reason;
-  const PackResult simplified = Pack(Ball(), LevelChoice::kNever);
-  EXPECT_LT(2 * BytesOf(Packed()), BytesOf(simplified)) << BytesOf(Packed());
-  EXPECT_GT(16 * BytesOf(Packed()), BytesOf(simplified)) << BytesOf(Packed());
+  const PackResult simplified = PackFast(Ball(), LevelChoice::kNever);
+  EXPECT_LT(2 * BytesOfHalves(Packed()), BytesOfHalves(simplified)) << BytesOfHalves(Packed());
+  EXPECT_GT(16 * BytesOfHalves(Packed()), BytesOfHalves(simplified)) << BytesOfHalves(Packed());
   EXPECT_LT(Packed().glb.size(), simplified.glb.size());
 }
 
@@ -95,12 +76,7 @@ TEST(MorphStream, NoLevelCracks) {
   for (int level = 0; level <= num_levels; ++level) {
     const Bytes plain = Unpacked(level);
     const auto num_shared = [&](std::optional<uint64_t> target) {
-      std::set<std::tuple<float, float, float>> points[2];
-      for (size_t half = 0; half < 2; ++half) {
-        for (const Vec3f& p : MorphedSurface(plain, half, target).positions) points[half].insert({p.x, p.y, p.z});
-      }
-      return static_cast<size_t>(
-          std::count_if(points[0].begin(), points[0].end(), [&](const auto& p) { return points[1].count(p) > 0; }));
+      return testing::NumSharedPoints(MorphedSurface(plain, 0, target), MorphedSurface(plain, 1, target));
     };
     EXPECT_EQ(num_shared(std::nullopt), num_shared(1));
     EXPECT_GT(num_shared(1), before);
@@ -134,10 +110,7 @@ TEST(MorphStream, EveryLevelAndTheFallbackHaveTargets) {
 }
 
 TEST(MorphStream, LoadersGetTargets) {
-  const GltfDocument document = ParseGltf(Packed().glb, "").value();
-  std::vector<Span<const uint8_t>> buffers;
-  for (const Bytes& buffer : document.buffers) buffers.emplace_back(buffer);
-  const std::vector<RefinedGeometry> geometries = RefineParsedGltf(document.json.dump(), buffers, {}).value();
+  const std::vector<RefinedGeometry> geometries = testing::RefinedBy(Packed().glb);
   ASSERT_EQ(geometries.size(), 2u);
   for (const RefinedGeometry& geometry : geometries) {
     EXPECT_TRUE(geometry.attributes.empty());
@@ -163,7 +136,7 @@ TEST(MorphStream, AnotherNumberOfTargetsIsNoticed) {
 }
 
 TEST(MorphStream, ManyTargetsAreSeveralAttributes) {
-  const PackResult packed = Pack(testing::BallWithHills({24, 40, 45, false, false, 0}), LevelChoice::kAlways);
+  const PackResult packed = PackFast(testing::BallWithHills({24, 40, 45, false, false, 0}), LevelChoice::kAlways);
   ASSERT_EQ(packed.report.primitives[0].storage, PrimitiveStorage::kProgressive) << packed.report.primitives[0].reason;
   EXPECT_EQ(testing::JsonOf(packed.glb)["extensions"]["LACERTA_mesh_progressive"]["streams"][0u]["attributes"],
             Json::array({"TARGETS_0_POSITION", "TARGETS_42_POSITION"}));
@@ -178,10 +151,7 @@ Bytes MorphedArm() {
     const float scale = 1 + 0.1f * std::sin(p.z) + 0.03f * std::sin(5 * angle + 2 * p.z) + 0.02f * std::sin(5 * p.z);
     p = {p.x * scale, p.y * scale, p.z};
   }
-  std::vector<VertexSoup::Attribute>& attributes = arm.soup.attributes;
-  attributes.erase(std::remove_if(attributes.begin(), attributes.end(),
-                                  [](const VertexSoup::Attribute& a) { return a.name == "NORMAL"; }),
-                   attributes.end());
+  testing::DropNormals(&arm.soup);
   GltfDocument document = ParseGltf(testing::SkinnedCylinderAsset(arm, 60.0, false), "").value();
   const std::vector<Vec3f> positions =
       Surface(ReadPrimitive(document, PrimitiveAt(document, {0, 0}), {}).value()).positions;
@@ -196,7 +166,7 @@ Bytes MorphedArm() {
 
 TEST(MorphStream, SkinsMayHaveTargets) {
   const Bytes asset = MorphedArm();
-  const PackResult packed = Pack(asset, LevelChoice::kWhereTheyPay);
+  const PackResult packed = PackFast(asset, LevelChoice::kWhereTheyPay);
   const PrimitiveReport& report = packed.report.primitives[0];
   ASSERT_EQ(report.storage, PrimitiveStorage::kProgressive) << report.reason;
   EXPECT_EQ(testing::JsonOf(packed.glb)["extensions"]["LACERTA_mesh_progressive"]["streams"][0u]["joints"].size(), 3u);

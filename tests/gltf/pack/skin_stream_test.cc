@@ -3,16 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
-#include <tuple>
 
+#include "gltf/halved_stream.h"
 #include "gltf/skinned_asset.h"
-#include "lacerta/parsed_gltf.h"
 #include "lacerta/surface_distance.h"
 
 namespace lacerta {
 namespace {
 
+using testing::BytesOfHalves;
+using testing::PackFast;
 using testing::PosedAt;
 
 // Bumps along the arm, no two alike, and no normals.
@@ -24,10 +24,7 @@ Bytes BumpyArm(bool halved) {
         1 + 0.1f * std::sin(p.z) + 0.03f * std::sin(5 * angle + 2 * p.z) + 0.02f * std::sin(9 * angle - 7 * p.z);
     p = {p.x * scale, p.y * scale, p.z};
   }
-  std::vector<VertexSoup::Attribute>& attributes = arm.soup.attributes;
-  attributes.erase(std::remove_if(attributes.begin(), attributes.end(),
-                                  [](const VertexSoup::Attribute& a) { return a.name == "NORMAL"; }),
-                   attributes.end());
+  testing::DropNormals(&arm.soup);
   return testing::SkinnedCylinderAsset(arm, 60.0, halved);
 }
 
@@ -36,41 +33,21 @@ const Bytes& Arm() {
   return *kArm;
 }
 
-PackResult Pack(const Bytes& asset, LevelChoice levels) {
-  PackOptions options;
-  options.encode.levels = levels;
-  options.encode.effort = Effort::kFast;
-  return PackGltf(asset, options).value();
-}
-
 const PackResult& Packed() {
-  static const PackResult* const kPacked = new PackResult(Pack(Arm(), LevelChoice::kWhereTheyPay));
+  static const PackResult* const kPacked = new PackResult(PackFast(Arm(), LevelChoice::kWhereTheyPay));
   return *kPacked;
 }
 
-uint64_t BytesOf(const PackResult& packed) {
-  return packed.report.primitives[0].bytes_after + packed.report.primitives[1].bytes_after;
-}
-
-Bytes Unpacked(std::optional<int> level = std::nullopt) {
-  UnpackOptions options;
-  options.level = level;
-  return UnpackGltf(Packed().glb, options).value().glb;
-}
+Bytes Unpacked(std::optional<int> level = std::nullopt) { return testing::UnpackedAt(Packed().glb, level); }
 
 TriangleMesh BothHalves(const Bytes& plain, size_t animation, double time) {
-  TriangleMesh both = PosedAt(plain, animation, time, 0);
-  const TriangleMesh second = PosedAt(plain, animation, time, 1);
-  const auto offset = static_cast<uint32_t>(both.positions.size());
-  both.positions.insert(both.positions.end(), second.positions.begin(), second.positions.end());
-  for (const Triangle& t : second.triangles) both.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-  return both;
+  return testing::Both(PosedAt(plain, animation, time, 0), PosedAt(plain, animation, time, 1));
 }
 
 TEST(SkinStream, TakesLessThanHalfOfWhatSimplifiedDoes) {
   for (const PrimitiveReport& primitive : Packed().report.primitives)
     EXPECT_EQ(primitive.storage, PrimitiveStorage::kProgressive) << primitive.reason;
-  const uint64_t bytes = BytesOf(Packed()), simplified = BytesOf(Pack(Arm(), LevelChoice::kNever));
+  const uint64_t bytes = BytesOfHalves(Packed()), simplified = BytesOfHalves(PackFast(Arm(), LevelChoice::kNever));
   EXPECT_LT(2 * bytes, simplified) << bytes << " / " << simplified;
   EXPECT_GT(8 * bytes, simplified) << bytes << " / " << simplified;
 }
@@ -94,12 +71,7 @@ TEST(SkinStream, NoLevelCracksInPoses) {
   for (int level = 0; level <= num_levels; ++level) {
     const Bytes plain = Unpacked(level);
     const auto num_shared = [&](double time) {
-      std::set<std::tuple<float, float, float>> points[2];
-      for (uint64_t half = 0; half < 2; ++half) {
-        for (const Vec3f& p : PosedAt(plain, 0, time, half).positions) points[half].insert({p.x, p.y, p.z});
-      }
-      return static_cast<size_t>(
-          std::count_if(points[0].begin(), points[0].end(), [&](const auto& p) { return points[1].count(p) > 0; }));
+      return testing::NumSharedPoints(PosedAt(plain, 0, time, 0), PosedAt(plain, 0, time, 1));
     };
     EXPECT_EQ(num_shared(0.0), num_shared(0.7));
     EXPECT_GT(num_shared(0.7), before);
@@ -134,10 +106,7 @@ TEST(SkinStream, EveryLevelAndTheFallbackAreLegal) {
 }
 
 TEST(SkinStream, LoadersGetJointsAsIntegers) {
-  const GltfDocument document = ParseGltf(Packed().glb, "").value();
-  std::vector<Span<const uint8_t>> buffers;
-  for (const Bytes& buffer : document.buffers) buffers.emplace_back(buffer);
-  const std::vector<RefinedGeometry> geometries = RefineParsedGltf(document.json.dump(), buffers, {}).value();
+  const std::vector<RefinedGeometry> geometries = testing::RefinedBy(Packed().glb);
   ASSERT_EQ(geometries.size(), 2u);
   for (const RefinedAttribute& attribute : geometries[0].attributes) {
     EXPECT_EQ(attribute.component_type, attribute.name == "JOINTS_0" ? 5121u : 5126u) << attribute.name;

@@ -6,8 +6,8 @@ import {before, test} from 'node:test';
 import {Logger, NodeIO} from '@gltf-transform/core';
 import {ALL_EXTENSIONS} from '@gltf-transform/extensions';
 import {dedup, flatten, join as joinMeshes, prune, quantize, simplify, weld} from '@gltf-transform/functions';
-import {LacertaMeshProgressive, toLevel} from '../../dist/gltf_transform.js';
-import {dracoModule, lacerta, largestUlps, nativeLevel, pack, readAsset, scratch, writeTorus} from './support.mjs';
+import {toLevel} from '../../dist/gltf_transform.js';
+import {dracoModule, lacerta, largestUlps, nativeLevel, pack, progressiveIo, readAsset, scratch, writeTorus} from './support.mjs';
 
 const mesh = join(scratch, 'transform_torus.obj');
 const fallbacks = {draco: [], plain: ['--fallback', 'plain'], none: ['--fallback', 'none', '--form', 'custom']};
@@ -15,8 +15,7 @@ let io, assets;
 
 before(async () => {
   writeTorus(mesh);
-  io = new NodeIO().setLogger(new Logger(Logger.Verbosity.ERROR)).registerExtensions([...ALL_EXTENSIONS, LacertaMeshProgressive])
-    .registerDependencies({'draco3d.decoder': await dracoModule()});
+  io = await progressiveIo();
   assets = Object.fromEntries(Object.entries(fallbacks).map(([name, options]) => [name, pack(`transform_${name}.glb`, mesh, '--levels', 'always', ...options)]));
 });
 

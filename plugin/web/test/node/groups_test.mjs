@@ -3,12 +3,10 @@ import assert from 'node:assert/strict';
 import {join} from 'node:path';
 import {test} from 'node:test';
 import {Worker} from 'node:worker_threads';
-import {Logger, NodeIO} from '@gltf-transform/core';
-import {ALL_EXTENSIONS} from '@gltf-transform/extensions';
 import {baseParts, parseProgressive, progressivePrimitive} from '../../dist/asset.js';
-import {LacertaMeshProgressive, toLevel} from '../../dist/gltf_transform.js';
+import {toLevel} from '../../dist/gltf_transform.js';
 import {LacertaError, createDecoder, createPool} from '../../dist/index.js';
-import {decodeDraco, dracoModule, example, lacerta, largestUlps, nativeGroups, readAsset, scratch} from './support.mjs';
+import {decodeDraco, dracoModule, example, lacerta, largestUlps, nativeGroups, progressiveIo, readAsset, scratch} from './support.mjs';
 
 const asset = example('torus_with_attributes.glb');
 
@@ -99,8 +97,7 @@ test('a worker hands every group over', async () => {
 });
 
 test('glTF-Transform keeps the groups, and makes ordinary primitives of a level', async () => {
-  const io = new NodeIO().setLogger(new Logger(Logger.Verbosity.ERROR)).registerExtensions([...ALL_EXTENSIONS, LacertaMeshProgressive])
-    .registerDependencies({'draco3d.decoder': await dracoModule()});
+  const io = await progressiveIo();
   const copy = join(scratch, 'groups_copy.glb');
   await io.write(copy, await io.read(asset));
   assert.deepEqual(readAsset(copy).data, data);

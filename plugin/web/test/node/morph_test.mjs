@@ -4,19 +4,18 @@ import {readFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {before, test} from 'node:test';
 import {Logger, NodeIO} from '@gltf-transform/core';
-import {ALL_EXTENSIONS} from '@gltf-transform/extensions';
 import * as three from 'three';
 import {GLTFLoader} from 'three/addons/loaders/GLTFLoader.js';
-import {baseParts, parseProgressive} from '../../dist/asset.js';
+import {baseParts} from '../../dist/asset.js';
 import {Decoder, instantiate} from '../../dist/decoder.js';
 import {readHead} from '../../dist/glb.js';
-import {LacertaMeshProgressive, toLevel} from '../../dist/gltf_transform.js';
+import {toLevel} from '../../dist/gltf_transform.js';
 import {compile} from '../../dist/index.js';
 import {Surface} from '../../dist/surface.js';
 import {takeTargets, targetAttribute} from '../../dist/target_channels.js';
 import {LacertaExtension} from '../../dist/three.js';
 import {kTargets, writeMorphedTorus} from './morphed_torus.mjs';
-import {decodeDraco, dracoModule, lacerta, largestUlps, pack, scratch} from './support.mjs';
+import {decodeDraco, dracoModule, lacerta, largestUlps, pack, progressiveIo, readAsset, scratch} from './support.mjs';
 
 let asset, io, stream, bytes;
 
@@ -24,11 +23,8 @@ before(async () => {
   const path = join(scratch, 'morphed_torus.glb');
   await writeMorphedTorus(path);
   asset = pack('morphed_torus_packed.glb', path, '--levels', 'always', '--psnr', '60');
-  io = new NodeIO().setLogger(new Logger(Logger.Verbosity.ERROR)).registerExtensions([...ALL_EXTENSIONS, LacertaMeshProgressive])
-    .registerDependencies({'draco3d.decoder': await dracoModule()});
-  const file = new Uint8Array(readFileSync(asset)), {json, binOffset} = readHead(file), {data, streams} = parseProgressive(json);
-  stream = streams[0];
-  bytes = file.subarray(binOffset + (json.bufferViews[data].byteOffset ?? 0));
+  io = await progressiveIo();
+  ({stream, data: bytes} = readAsset(asset));
 });
 
 // The offsets of each target as the native command unpacks them.

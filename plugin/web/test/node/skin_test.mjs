@@ -1,19 +1,16 @@
 // Skinned surfaces: weights of joints in a stream become what glTF and three.js want, at every level.
 import assert from 'node:assert/strict';
-import {readFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {before, test} from 'node:test';
-import {Document, Logger, NodeIO} from '@gltf-transform/core';
-import {ALL_EXTENSIONS} from '@gltf-transform/extensions';
+import {Document, NodeIO} from '@gltf-transform/core';
 import * as three from 'three';
 import {baseParts, parseProgressive} from '../../dist/asset.js';
 import {Decoder, instantiate} from '../../dist/decoder.js';
-import {readHead} from '../../dist/glb.js';
-import {LacertaMeshProgressive, toLevel} from '../../dist/gltf_transform.js';
+import {toLevel} from '../../dist/gltf_transform.js';
 import {compile} from '../../dist/index.js';
 import {baseNames, gatherWeights, spreadWeights} from '../../dist/joint_weights.js';
 import {Surface} from '../../dist/surface.js';
-import {decodeDraco, dracoModule, largestUlps, nativeGroups, pack, scratch} from './support.mjs';
+import {decodeDraco, dracoModule, largestUlps, nativeGroups, pack, progressiveIo, readAsset, scratch} from './support.mjs';
 
 // A torus with bumps that three of four joints move, the first of which is not used.
 async function writeSkinnedTorus(path, around = 160, across = 80) {
@@ -56,11 +53,8 @@ before(async () => {
   const path = join(scratch, 'skinned_torus.glb');
   await writeSkinnedTorus(path);
   asset = pack('skinned_torus_packed.glb', path, '--levels', 'always', '--psnr', '60');
-  io = new NodeIO().setLogger(new Logger(Logger.Verbosity.ERROR)).registerExtensions([...ALL_EXTENSIONS, LacertaMeshProgressive])
-    .registerDependencies({'draco3d.decoder': await dracoModule()});
-  const file = new Uint8Array(readFileSync(asset)), {json, binOffset} = readHead(file), {data, streams} = parseProgressive(json);
-  stream = streams[0];
-  bytes = file.subarray(binOffset + (json.bufferViews[data].byteOffset ?? 0));
+  io = await progressiveIo();
+  ({stream, data: bytes} = readAsset(asset));
 });
 
 test('the four largest weights are kept, with the sum 1', () => {

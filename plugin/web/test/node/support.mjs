@@ -5,9 +5,11 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {Logger, NodeIO} from '@gltf-transform/core';
+import {ALL_EXTENSIONS} from '@gltf-transform/extensions';
 import draco3d from 'draco3d';
 import {parseProgressive} from '../../dist/asset.js';
 import {readHead} from '../../dist/glb.js';
+import {LacertaMeshProgressive} from '../../dist/gltf_transform.js';
 
 export {decodeDraco} from './decode_draco.mjs';
 
@@ -76,6 +78,12 @@ export function largestUlps(a, b) {
 
 let draco;
 export const dracoModule = async () => draco ??= await draco3d.createDecoderModule();
+
+/** glTF-Transform with our extension and Draco. */
+export async function progressiveIo() {
+  return new NodeIO().setLogger(new Logger(Logger.Verbosity.ERROR)).registerExtensions([...ALL_EXTENSIONS, LacertaMeshProgressive])
+    .registerDependencies({'draco3d.decoder': await dracoModule()});
+}
 
 /** A torus with bumps as OBJ, closed and smooth: something that becomes a stream of several levels in a second. */
 export function writeTorus(path, around = 120, across = 60) {
