@@ -20,12 +20,13 @@ TEST(AttributedCandidateTest, StreamsMeetTheirTargetsAndLeaveLittleOfThem) {
   size_t bytes = 0;
   for (const double psnr : {60.0, 66.0, 72.0, 78.0}) {
     SCOPED_TRACE(psnr);
-    const ErrorTargets targets = TargetsFor(mesh, meter.diagonal() * std::pow(10, -psnr / 20), 2, 2);
+    ErrorTargets targets = TargetsFor(mesh, meter.diagonal() * std::pow(10, -psnr / 20), 2, 2);
+    targets.turned = 5e-4;  // as assets are packed
     ASSERT_TRUE(candidate.CanMeet(targets));
     const AttributedTrial trial = candidate.Meet(targets, {8, 6, 20'000}).value();
     EXPECT_LE(trial.ratio, 1);
     EXPECT_GT(trial.ratio, 0.7);
-    EXPECT_LT(trial.errors.turned, 2e-3);
+    EXPECT_LT(trial.errors.turned, 1e-3);
     EXPECT_GT(trial.stream.size(), 800u);
     EXPECT_LT(trial.stream.size(), 3000u);  // of a surface of 9216 triangles
     // Bytes grow with quality, but for what the texture costs where positions may slide.
