@@ -15,6 +15,7 @@
 #include "draco/still_part.h"
 #include "draco/subdivided_input.h"
 #include "draco/zero_level_search.h"
+#include "geometry/triangle_tree.h"
 #include "lacerta/clean.h"
 #include "lacerta/codec.h"
 #include "lacerta/decoder.h"
@@ -230,14 +231,15 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   }
   ResolvedTarget target = LessForm(asked, options.form);
   target.quality_layers = options.quality_layers;
-  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(mesh));
+  // Against what came in: a triangle that is there twice counts twice for whoever measures the two files.
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(input));
   EncodeReport report;
   report.clean = cleaned.report;
   report.input_vertices = mesh.positions.size();
   report.input_triangles = mesh.triangles.size();
   report.diagonal = meter.diagonal();
 
-  const double crowding = meter.Crowding();
+  const double crowding = TriangleTree(mesh).Crowding();
   StatusOr<EncodedParts> encoded = EncodeSurface(mesh, crowding, meter, target, options, report);
   if (!encoded.ok()) {  // without refinement, then, with the reason
     if (options.progress) options.progress(0.1, "simplifying");

@@ -102,6 +102,8 @@ double BoundingBoxDiagonal(const TriangleMesh& mesh) {
   Vec3d min{kInfinity, kInfinity, kInfinity}, max{-kInfinity, -kInfinity, -kInfinity};
   for (const Triangle& t : mesh.triangles) {
     if (std::max({t[0], t[1], t[2]}) >= mesh.positions.size()) continue;
+    const Vec3f &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    if (a == b || b == c || c == a) continue;
     for (const uint32_t v : t) {
       for (int k = 0; k < 3; ++k) {
         const double x = static_cast<double>(mesh.positions[v][k]);
@@ -165,8 +167,6 @@ StatusOr<SurfaceDistance> SurfaceDistanceMeter::Measure(const TriangleMesh& mesh
 }
 
 double SurfaceDistanceMeter::diagonal() const { return original_->diagonal; }
-
-double SurfaceDistanceMeter::Crowding() const { return original_->tree.Crowding(); }
 
 StatusOr<SurfaceDistance> MeasureSurfaceDistance(const TriangleMesh& original, const TriangleMesh& mesh,
                                                  const SurfaceDistanceOptions& options) {

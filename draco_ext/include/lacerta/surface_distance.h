@@ -45,7 +45,7 @@ struct SurfaceDistance {
 };
 
 // Length of the diagonal of the box around the vertices that triangles use, model units. 0 where there is none;
-// triangles with an index out of range do not count.
+// triangles with an index out of range do not count, nor do those with two corners at one point, which are no surface.
 double BoundingBoxDiagonal(const TriangleMesh& mesh);
 
 // No two meshes of floats are measured to be closer than this many dB.
@@ -80,8 +80,6 @@ class SurfaceDistanceMeter {
 
   // Of the original's bounding box, model units.
   double diagonal() const;
-  // Of the original: TriangleTree::Crowding (geometry/triangle_tree.h).
-  double Crowding() const;
 
  private:
   struct Surface;

@@ -342,6 +342,29 @@ TEST(EncodeMeshTest, CleansBeforeItRemeshes) {
   EXPECT_EQ(soup.report.input_vertices, shapes::Icosphere(3).positions.size());
 }
 
+// Triangles that are there several times count as often, and one without area does not make the mesh larger.
+TEST(EncodeMeshTest, MeasuresAgainstWhatCameIn) {
+  TriangleMesh mesh = Scan();
+  for (size_t f = mesh.triangles.size(); f-- > 0;) {
+    const Vec3f& p = mesh.positions[mesh.triangles[f][0]];
+    if (p.z > 0 && p.x > 0.5f) mesh.triangles.insert(mesh.triangles.end(), 5, mesh.triangles[f]);
+  }
+  const double diagonal = BoundingBoxDiagonal(mesh);
+  mesh.positions.push_back({50, 0, 0});
+  const auto far = static_cast<uint32_t>(mesh.positions.size() - 1);
+  mesh.triangles.push_back({far, far, 0});
+  for (const LevelChoice levels : {LevelChoice::kAlways, LevelChoice::kNever}) {
+    EncodeOptions options = OptionsFor(Kind::kPsnr, 54);
+    options.levels = levels;
+    const EncodedMesh encoded = EncodeOrDie(mesh, options);
+    EXPECT_GT(encoded.report.clean.duplicate_triangles, 1000u);
+    EXPECT_NEAR(encoded.report.diagonal, diagonal, 1e-6 * diagonal);
+    const LevelReport& finest = encoded.report.levels.back();
+    EXPECT_GE(finest.psnr, 54.0);
+    EXPECT_NEAR(DecodedPsnr(mesh, encoded.stream, static_cast<int>(encoded.report.levels.size()) - 1), finest.psnr, 0.01);
+  }
+}
+
 TEST(EncodeMeshTest, RefusesDamagedMeshesByName) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   for (const float bad : {nan, infinity, -infinity}) {

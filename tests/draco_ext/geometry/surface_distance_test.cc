@@ -314,6 +314,8 @@ TEST(BoundingBoxDiagonal, IsThatOfTheUsedVertices) {
   EXPECT_NEAR(BoundingBoxDiagonal(mesh), std::sqrt(3.0), 1e-12);
   mesh.positions.push_back({100, 100, 100});
   mesh.triangles.push_back({0, 1, 12345});
+  const auto far = static_cast<uint32_t>(mesh.positions.size() - 1);
+  mesh.triangles.push_back({0, far, far});
   EXPECT_NEAR(BoundingBoxDiagonal(mesh), std::sqrt(3.0), 1e-12);
   EXPECT_EQ(BoundingBoxDiagonal({}), 0.0);
 }
