@@ -20,9 +20,9 @@ inline int32_t RoundToStep(float value, float step) {
   return static_cast<int32_t>(std::clamp(std::nearbyint(value / step), -kLimit, kLimit));
 }
 
-// `mesh` on the lattice of about `step` (never larger): the step is shortened to 8 significant bits, so that floats hold
-// lattice points exactly, and raised where floats of the mesh's size could not. A step that is not a number counts as 0, an
-// infinite one as the largest float.
+// `mesh` on the lattice of about `step`: the step is shortened to 8 significant bits, so that floats hold lattice points exactly; to
+// fewer, 2 at least, where the mesh lies farther from zero than 2^16 steps; and raised where it lies farther than 2^22. A step that is
+// not a number counts as 0, an infinite one as the largest float.
 BaseMesh RoundToLattice(const TriangleMesh& mesh, float step);
 
 }  // namespace lacerta

@@ -187,7 +187,8 @@ TEST(EncodeRobustnessTest, PlaceSizeAndOrderHardlyChangeTheBytes) {
   const EncodedMesh plain = encode(mesh);
   ASSERT_TRUE(plain.report.progressive);
   const auto bytes = static_cast<double>(plain.stream.size());
-  for (const TriangleMesh& other : {Moved(mesh, 1000.0f, {}), Moved(mesh, 1e-6f, {}), Moved(mesh, 1.0f, {3, -2, 1}), turned, reordered, renumbered}) {
+  const TriangleMesh far = Moved(mesh, 1.0f, {2000, -3000, 100});  // 1,000 diagonals
+  for (const TriangleMesh& other : {Moved(mesh, 1000.0f, {}), Moved(mesh, 1e-6f, {}), Moved(mesh, 1.0f, {3, -2, 1}), far, turned, reordered, renumbered}) {
     const EncodedMesh encoded = encode(other);
     EXPECT_NEAR(static_cast<double>(encoded.stream.size()), bytes, 0.15 * bytes);
     EXPECT_NEAR(encoded.report.levels.back().psnr, plain.report.levels.back().psnr, 0.5);  // both over the target; so small a stream jumps

@@ -60,10 +60,29 @@ TEST(RoundToLattice, RaisesStepsThatFloatsCouldNotHold) {
     for (const float step : {0.0f, 1e-9f * scale, -1.0f}) {
       const BaseMesh base = RoundToLattice(mesh, step);
       const float extent = LargestCoordinate(mesh);
-      EXPECT_LE(extent / base.step, 65536);
-      EXPECT_GT(extent / base.step, 60000);
+      EXPECT_LE(extent / base.step, 1 << 22);
+      EXPECT_GT(extent / base.step, 1 << 20);
       const TriangleMesh rounded = base.ToMesh();
       for (size_t v = 0; v < mesh.positions.size(); ++v) EXPECT_LE(Norm(rounded.positions[v] * (1 / scale) - mesh.positions[v] * (1 / scale)), 2e-5f);
+    }
+  }
+}
+
+TEST(RoundToLattice, ShortensTheStepFarFromZero) {
+  for (const float distance : {1e3f, 1e4f, 1e5f}) {
+    TriangleMesh mesh = shapes::Icosphere(2);
+    for (Vec3f& p : mesh.positions) p += Vec3f{distance, -0.3f * distance, 0};
+    constexpr float kStep = 0.11f;
+    const BaseMesh base = RoundToLattice(mesh, kStep);
+    EXPECT_LE(base.step, kStep);
+    EXPECT_GT(base.step, 0.6f * kStep);
+    const TriangleMesh rounded = base.ToMesh();
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_LE(std::fabs(rounded.positions[v][c] - mesh.positions[v][c]), base.step * 0.50001f);
+        const double exact = static_cast<double>(base.step) * base.lattice[v][static_cast<size_t>(c)];
+        EXPECT_EQ(static_cast<double>(rounded.positions[v][c]), exact) << "floats hold lattice points exactly";
+      }
     }
   }
 }
