@@ -26,6 +26,12 @@ bool BeginsWith(Span<const uint8_t> bytes, const char* magic) {
   return bytes.size() >= length && std::memcmp(bytes.data(), magic, length) == 0;
 }
 
+// Text files of some editors and shells: their mark, and a letter of ASCII after it.
+bool IsUtf16(Span<const uint8_t> bytes) {
+  if (bytes.size() < 4) return false;
+  return (bytes[0] == 0xFF && bytes[1] == 0xFE && bytes[3] == 0) || (bytes[0] == 0xFE && bytes[1] == 0xFF && bytes[2] == 0);
+}
+
 // Notes on what was left out are for those who call FlattenGltf themselves.
 StatusOr<TriangleMesh> ParseGltfSurface(Span<const uint8_t> bytes, const std::string& folder) {
   UnpackOptions options;
@@ -72,6 +78,8 @@ StatusOr<MeshFormat> DetectMeshFormat(const std::string& path, Span<const uint8_
 
 StatusOr<TriangleMesh> ParseMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder) {
   if (bytes.empty()) return InvalidData("the file is empty");
+  if (IsUtf16(bytes)) return Unsupported("the file is UTF-16 text; save it as UTF-8 or ASCII");
+  if (BeginsWith(bytes, "\xEF\xBB\xBF")) bytes = bytes.Subspan(3);  // the mark of UTF-8
   switch (format) {
     case MeshFormat::kPly:
       return ParsePly(bytes);

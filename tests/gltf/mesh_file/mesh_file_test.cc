@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <string>
+#include <utility>
 
 #include "gltf/test_bytes.h"
 #include "lacerta/file_io.h"
@@ -82,6 +84,30 @@ TEST_F(MeshFile, ContentGoesBeforeTheExtension) {
   ASSERT_TRUE(WriteMeshFile(Tetrahedron(), folder_ + "/a.ply").ok());
   std::filesystem::rename(folder_ + "/a.ply", folder_ + "/a.obj");
   EXPECT_TRUE(ReadMeshFile(folder_ + "/a.obj").ok());
+}
+
+Bytes ToUtf16(const std::string& text, bool is_big_endian) {
+  Bytes bytes;
+  for (const uint16_t unit : std::u16string(u"\xFEFF") + std::u16string(text.begin(), text.end())) {
+    const auto high = static_cast<uint8_t>(unit >> 8), low = static_cast<uint8_t>(unit);
+    bytes.push_back(is_big_endian ? high : low);
+    bytes.push_back(is_big_endian ? low : high);
+  }
+  return bytes;
+}
+
+TEST_F(MeshFile, ReadsMarkedUtf8AndNamesUtf16) {
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const auto& [text, format] : {std::pair(obj, MeshFormat::kObj), std::pair(off, MeshFormat::kOff)}) {
+    const StatusOr<TriangleMesh> marked = ParseMesh(FromText("\xEF\xBB\xBF" + text), format);
+    ASSERT_TRUE(marked.ok()) << marked.status().message();
+    EXPECT_EQ(marked.value().positions, ParseMesh(FromText(text), format).value().positions);
+    for (const bool is_big_endian : {false, true}) {
+      const Status status = ParseMesh(ToUtf16(text, is_big_endian), format).status();
+      EXPECT_EQ(status.code(), StatusCode::kUnsupported);
+      EXPECT_THAT(status.message(), AllOf(HasSubstr("UTF-16"), HasSubstr("save it as UTF-8")));
+    }
+  }
 }
 
 TEST_F(MeshFile, ReadsRealMeshes) {
