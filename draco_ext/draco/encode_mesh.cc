@@ -151,9 +151,21 @@ std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const Sur
   return std::move(chosen).value();
 }
 
-// The surface as a normal mesh at the target. Simplifies the mesh beside that, where `sequence` is given; fills `report`.
+// A mesh as it becomes simpler, and the search for a stream without levels among those. Stays where it is made.
+struct SimplerSurface {
+  SimplerSurface(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, const SearchEffort& effort)
+      : sequence(mesh), search(mesh, sequence, meter, target, effort) {}
+  SimplerSurface(const SimplerSurface&) = delete;
+  SimplerSurface& operator=(const SimplerSurface&) = delete;
+
+  const SimplificationSequence sequence;
+  SimplerStream search;
+};
+
+// The surface as a normal mesh at the target, unless a simplified mesh, which `simpler` then is, outdoes it by far: *is_simpler, and another
+// status. simpler: set where levels are to pay. Fills `report`.
 StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                    const EncodeOptions& options, std::optional<SimplificationSequence>* sequence, PartsReport* report) {
+                                    const EncodeOptions& options, std::optional<SimplerSurface>* simpler, bool* is_simpler, PartsReport* report) {
   const SurfaceParts parts = SplitSurface(mesh);
   if (parts.refined.triangles.empty()) return Unsupported("no component has triangles enough to be worth remeshing");
   if (options.progress) options.progress(0.02, "simplifying");
@@ -171,17 +183,23 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
         }
       },
       [&] {
-        if (sequence != nullptr) sequence->emplace(mesh);
+        if (options.levels == LevelChoice::kWhereTheyPay) simpler->emplace(mesh, meter, target, effort);
       });
   const StillPart still = PrepareStillPart(parts.still, parts.refined, DistanceOfPsnr(psnr, meter.diagonal()));
   *report = {parts.refined_components,       parts.still_components, still.hidden_components,
              parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices};
+  const auto is_outdone = [&](double bytes) {
+    if (!*simpler) return false;
+    const StatusOr<bool> takes_fewer = (*simpler)->search.TakesFewerThan(bytes);
+    *is_simpler = takes_fewer.ok() && takes_fewer.value();
+    return *is_simpler;
+  };
   StatusOr<ChosenStream> best = InternalError("no simplification was tried");
   for (size_t h = 0; h < histories.size(); ++h) {
     const auto progress = [&](double share, const char* what) {
       if (options.progress) options.progress((static_cast<double>(h) + share) / static_cast<double>(histories.size()), what);
     };
-    StatusOr<ChosenStream> chosen = CodeAtTarget({surface, histories[h], still.mesh}, meter, target, options.mode, progress, effort);
+    StatusOr<ChosenStream> chosen = CodeAtTarget({surface, histories[h], still.mesh}, meter, target, options.mode, progress, effort, is_outdone);
     const bool is_better = !best.ok() || (chosen.ok() && IsBetter(OutcomeOf(chosen.value().measured), OutcomeOf(best.value().measured), target));
     if (is_better) best = std::move(chosen);
   }
@@ -197,27 +215,28 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, double crowding, 
   if (options.progress) options.progress(0.0, "looking at the surface");
   std::optional<ChosenStream> chosen = EncodeSubdivided(mesh, meter, target, options);
   report.subdivided_input = chosen.has_value();
-  std::optional<SimplificationSequence> sequence;
+  std::optional<SimplerSurface> simpler;
+  bool is_simpler = false;
   // A base as small as remeshes have is the best there is; a larger one may take more bytes than another surface in all.
   if (!chosen || HasLargeBase(*chosen, target, mesh)) {
     PartsReport parts;
-    StatusOr<ChosenStream> remeshed =
-        CodeRemeshed(mesh, meter, target, options, options.levels == LevelChoice::kWhereTheyPay ? &sequence : nullptr, &parts);
-    if (!chosen && !remeshed.ok()) return remeshed.status();
-    if (!chosen || (remeshed.ok() && !IsWorthItsVertices(chosen->measured, remeshed.value().measured, target))) {
-      chosen = std::move(remeshed).value();
+    StatusOr<ChosenStream> remeshed = CodeRemeshed(mesh, meter, target, options, &simpler, &is_simpler, &parts);
+    if (!chosen && !is_simpler && !remeshed.ok()) return remeshed.status();
+    const bool is_remeshed = remeshed.ok() && (!chosen || !IsWorthItsVertices(chosen->measured, remeshed.value().measured, target));
+    if (is_remeshed) chosen = std::move(remeshed).value();
+    if (is_remeshed || !chosen) {
       report.subdivided_input = false;
       report.parts = parts;
     }
   }
   if (options.progress) options.progress(0.95, "comparing with Draco");
-  std::optional<ZeroLevelStream> simpler;
-  if (sequence) {
-    LACERTA_ASSIGN_OR_RETURN(simpler, SimplerIfBetter(mesh, *sequence, meter, target, chosen->measured, EffortOf(options.effort)));
+  if (simpler && chosen) {
+    LACERTA_ASSIGN_OR_RETURN(is_simpler, simpler->search.IsBetterThan(chosen->measured));
   }
-  if (!simpler) return FromRefinement(meter, *chosen, target, report, ReasonForMiss(chosen->measured, target));
+  if (!is_simpler) return FromRefinement(meter, *chosen, target, report, ReasonForMiss(chosen->measured, target));
   report.subdivided_input = false;
-  return FromZeroLevel(std::move(*simpler), report, ReasonForSimpler(*simpler, target));
+  const ZeroLevelStream& stream = simpler->search.stream();
+  return FromZeroLevel(stream, report, ReasonForSimpler(stream, target));
 }
 
 }  // namespace

@@ -47,6 +47,8 @@ struct Rung {
 
 // Candidates that are taken to the target in all. No more are kept than are taken at a time: each is as large as the input.
 constexpr size_t kMost = 4;
+// What the bytes of the stream in the end are at least: against those of the best score so far, or of all, and for a vertex of the base.
+constexpr double kLeastShare = 0.45, kLeastShareAtEnd = 0.85, kFewestBytesPerVertex = 1.0;
 // What a PSNR costs, about: ln(bytes) per dB.
 constexpr double kLogBytesPerDecibel = 0.11;
 
@@ -62,16 +64,19 @@ class Ladder {
 
   // Scores the rungs around the typical one and goes on until one on either side of the best is known to be much worse, or two to be
   // worse: one alone may be a fluke of its simplification. Returns the most promising rungs, best first; at least one.
-  StatusOr<std::vector<int>> FindBest(const std::function<void(double, const char*)>& progress) {
+  StatusOr<std::vector<int>> FindBest(const std::function<void(double, const char*)>& progress, const std::function<bool(double)>& is_outdone) {
     const int first = std::clamp(RungOfSize(TypicalBase(TypicalPsnr(target_, num_input_))), first_, last_);
+    const Status outdone = Unsupported("a stream without levels is much smaller");
+    if (is_outdone(LeastBytesFrom(std::max(first - 1, first_)))) return outdone;
     Visit(effort_.enough_sizes == 1 ? std::vector<int>{first} : std::vector<int>{first - 1, first, first + 1});
     for (;;) {
       if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(rungs_.size())), "choosing the base mesh");
       const std::vector<int> ranking = Ranking();
       for (size_t i = effort_.at_a_time; i < ranking.size(); ++i) LetGo(&rungs_[ranking[i]]);
       const int best = ranking.front(), highest = rungs_.rbegin()->first;
+      const bool is_scored = std::isfinite(rungs_[best].score);
       std::vector<int> next;
-      if (std::isfinite(rungs_[best].score)) {
+      if (is_scored) {
         for (const int r : {best - 1, best + 1}) {
           const int beyond = 2 * r - best;
           if (IsMissing(r)) {
@@ -83,8 +88,10 @@ class Ladder {
       } else if (highest < last_) {  // nothing reaches the target yet: larger bases
         next = {highest + 1, highest + 2};
       }
-      const bool is_enough = rungs_.size() >= effort_.enough_sizes && std::isfinite(rungs_[best].score);
-      if (next.empty() || is_enough) {
+      const bool is_enough = next.empty() || (rungs_.size() >= effort_.enough_sizes && is_scored);
+      const double least_share = is_enough ? kLeastShareAtEnd : kLeastShare;
+      if (is_outdone(is_scored ? least_share * std::exp(rungs_[best].score) : LeastBytesFrom(highest + 1))) return outdone;
+      if (is_enough) {
         std::vector<int> result;
         for (const int r : ranking) {
           if (rungs_[r].status.ok()) result.push_back(r);
@@ -115,6 +122,9 @@ class Ladder {
   int RungOfSize(double size) const {
     return std::max(0, static_cast<int>(std::lround(std::log(size / kFirstRung) / std::log(effort_.size_ratio))));
   }
+
+  // Of streams with a base of that rung or a larger one: some lattice points take more, none of hundreds of bases took less.
+  double LeastBytesFrom(int rung) const { return kFewestBytesPerVertex * RungSize(rung); }
 
   // Whether rung a scores so much worse than b that it hardly is a fluke: neighbouring rungs are rarely further from the smooth curve
   // of all rungs.
@@ -248,9 +258,11 @@ StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_
 }
 
 StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
-                                    const std::function<void(double, const char*)>& progress, const SearchEffort& effort) {
+                                    const std::function<void(double, const char*)>& progress, const SearchEffort& effort,
+                                    const std::function<bool(double)>& is_outdone) {
   Ladder ladder(surface, meter, target, mode, effort);
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<int> rungs, ladder.FindBest(progress));
+  const bool may_be_outdone = is_outdone && !target.is_rate;
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<int> rungs, ladder.FindBest(progress, may_be_outdone ? is_outdone : [](double) { return false; }));
   if (progress) progress(0.8, "meeting the target");
   // Scores are estimates: a few candidates at a time are taken to the target until one meets it, and the better of them is kept.
   StatusOr<ChosenStream> best = InternalError("no base was taken to the target");

@@ -33,6 +33,8 @@ bool IsHopeless(const SimplificationSequence& sequence, const SurfaceDistanceMet
   return Square(distance) > kMostGain * Square(DistanceOfPsnr(target.psnr, meter.diagonal()));
 }
 
+}  // namespace
+
 class ZeroLevelSearch {
  public:
   ZeroLevelSearch(const TriangleMesh& mesh, const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter,
@@ -41,12 +43,12 @@ class ZeroLevelSearch {
     if (!target.is_rate) distortion_ = Square(DistanceOfPsnr(target.psnr, meter.diagonal()));
   }
 
-  // Looks for the best number of triangles. most_bytes: of a stream that there is at the PSNR; false where it is hopeless to
-  // become smaller than that.
+  // Looks for the best number of triangles, from what earlier calls found. most_bytes: of a stream that there is at the PSNR; false
+  // where it is hopeless to become smaller than that.
   StatusOr<bool> FindSize(double most_bytes) {
-    const uint32_t first = FirstSize();
-    LACERTA_RETURN_IF_ERROR(Look(first));
-    const Trial& trial = tried_.at(first);
+    if (first_ == 0) first_ = FirstSize();
+    LACERTA_RETURN_IF_ERROR(Look(first_));
+    const Trial& trial = tried_.at(first_);
     if (!target_.is_rate && trial.meets && static_cast<double>(trial.coding.bytes) > kHopeless * most_bytes) return false;
     if (!target_.is_rate) LACERTA_RETURN_IF_ERROR(Look(SizeByShare(trial)));
     for (double ratio = kWideRatio; ratio > kNarrowRatio; ratio = std::sqrt(ratio)) {
@@ -62,6 +64,12 @@ class ZeroLevelSearch {
     // A mesh of many regular triangles may take fewer bytes as it is.
     if (static_cast<double>(mesh_.triangles.size()) < kMostRegular * best_) LACERTA_RETURN_IF_ERROR(Look(Clamped(1e18)));
     return !(!target_.is_rate && tried_.at(best_).meets && static_cast<double>(tried_.at(best_).coding.bytes) > kHopelessAtBest * most_bytes);
+  }
+
+  // Of the stream of the best size, about; infinite where that does not meet the PSNR.
+  double BestBytes() const {
+    const Trial& best = tried_.at(best_);
+    return best.meets ? static_cast<double>(best.coding.bytes) : std::numeric_limits<double>::infinity();
   }
 
   // The stream of the best size.
@@ -259,10 +267,8 @@ class ZeroLevelSearch {
   FitTarget fit_target_;
   double distortion_ = 0;  // of a PSNR target
   std::map<uint32_t, Trial> tried_;  // by number of triangles asked for
-  uint32_t best_ = 0;                // of those
+  uint32_t first_ = 0, best_ = 0;    // of those
 };
-
-}  // namespace
 
 ZeroLevelStream MeasuredZeroLevel(CodedZeroLevel coded, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                   const SurfaceDistanceOptions& samples) {
@@ -284,20 +290,39 @@ StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceD
   return search.Finish();
 }
 
-StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const SimplificationSequence& sequence,
-                                                         const SurfaceDistanceMeter& meter, const ResolvedTarget& target, const MeasuredStream& coded,
-                                                         const SearchEffort& effort) {
+SimplerStream::SimplerStream(const TriangleMesh& mesh, const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter,
+                             const ResolvedTarget& target, const SearchEffort& effort)
+    : mesh_(mesh), sequence_(sequence), meter_(meter), target_(target), effort_(effort) {}
+
+SimplerStream::~SimplerStream() = default;
+
+StatusOr<bool> SimplerStream::Find(double most_bytes) {
+  if (!search_) search_ = std::make_unique<ZeroLevelSearch>(mesh_, sequence_, meter_, target_, effort_);
+  return search_->FindSize(most_bytes);
+}
+
+StatusOr<bool> SimplerStream::TakesFewerThan(double bytes) {
+  const auto does = [&](const ZeroLevelStream& stream) { return stream.meets_target && static_cast<double>(stream.stream.size()) < bytes; };
+  if (stream_) return does(*stream_);
+  if (target_.is_rate || IsHopeless(sequence_, meter_, target_, bytes)) return false;
+  LACERTA_ASSIGN_OR_RETURN(const bool may_be, Find(bytes));
+  if (!may_be || search_->BestBytes() >= bytes) return false;
+  LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, search_->Finish());
+  if (does(stream)) stream_ = std::move(stream);
+  return stream_.has_value();
+}
+
+StatusOr<bool> SimplerStream::IsBetterThan(const MeasuredStream& coded) {
   const double most_bytes = coded.meets_target ? static_cast<double>(coded.stream.size()) : std::numeric_limits<double>::infinity();
-  std::optional<ZeroLevelStream> result;
   constexpr double kLevelsWorthBytes = 0.05, kLevelsWorthPsnr = 0.3;
-  if (IsHopeless(sequence, meter, target, (1 - kLevelsWorthBytes) * most_bytes)) return result;
-  ZeroLevelSearch search(mesh, sequence, meter, target, effort);
-  LACERTA_ASSIGN_OR_RETURN(const bool may_be_better, search.FindSize(most_bytes));
-  if (!may_be_better) return result;
-  LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, search.Finish());
+  if (!stream_) {
+    if (IsHopeless(sequence_, meter_, target_, (1 - kLevelsWorthBytes) * most_bytes)) return false;
+    LACERTA_ASSIGN_OR_RETURN(const bool may_be_better, Find(most_bytes));
+    if (!may_be_better) return false;
+    LACERTA_ASSIGN_OR_RETURN(stream_, search_->Finish());
+  }
   const auto bytes_to_beat = static_cast<size_t>((1 - kLevelsWorthBytes) * static_cast<double>(coded.stream.size()));
-  if (IsBetter(OutcomeOf(stream), {coded.meets_target, bytes_to_beat, coded.psnr + kLevelsWorthPsnr}, target)) result = std::move(stream);
-  return result;
+  return IsBetter(OutcomeOf(*stream_), {coded.meets_target, bytes_to_beat, coded.psnr + kLevelsWorthPsnr}, target_);
 }
 
 }  // namespace lacerta

@@ -2,6 +2,7 @@
 #ifndef LACERTA_DRACO_ZERO_LEVEL_SEARCH_H_
 #define LACERTA_DRACO_ZERO_LEVEL_SEARCH_H_
 
+#include <memory>
 #include <optional>
 
 #include "draco/rate_control.h"
@@ -11,6 +12,8 @@
 #include "remesh/simplify.h"
 
 namespace lacerta {
+
+class ZeroLevelSearch;
 
 struct ZeroLevelStream {
   Bytes stream;
@@ -31,12 +34,34 @@ ZeroLevelStream MeasuredZeroLevel(CodedZeroLevel coded, const SurfaceDistanceMet
 StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                         const SearchEffort& effort = SearchEffort());
 
-// The same where it clearly beats `coded`, which has levels to show for its bytes: it meets the target in 5 % fewer of them, or with a
-// PSNR 0.3 dB higher in as many, or comes nearer to it. None where it does not, which is often seen early. sequence: of
-// `mesh`.
-StatusOr<std::optional<ZeroLevelStream>> SimplerIfBetter(const TriangleMesh& mesh, const SimplificationSequence& sequence,
-                                                         const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                                         const MeasuredStream& coded, const SearchEffort& effort = SearchEffort());
+// A search for a stream without levels beside one with levels. All referenced objects must outlive it.
+class SimplerStream {
+ public:
+  // sequence: of `mesh`.
+  SimplerStream(const TriangleMesh& mesh, const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
+                const SearchEffort& effort = SearchEffort());
+  ~SimplerStream();
+
+  // Whether a stream meets the PSNR in fewer than so many bytes. Never at a rate.
+  StatusOr<bool> TakesFewerThan(double bytes);
+  // Whether a stream clearly beats `coded`, which has levels to show for its bytes: it meets the target in 5 % fewer of them, or with a
+  // PSNR 0.3 dB higher in as many, or comes nearer to it. That it does not is often seen early.
+  StatusOr<bool> IsBetterThan(const MeasuredStream& coded);
+
+  // The one for which the last answer was yes.
+  const ZeroLevelStream& stream() const { return *stream_; }
+
+ private:
+  StatusOr<bool> Find(double most_bytes);  // false: hopeless
+
+  const TriangleMesh& mesh_;
+  const SimplificationSequence& sequence_;
+  const SurfaceDistanceMeter& meter_;
+  const ResolvedTarget target_;
+  const SearchEffort effort_;
+  std::unique_ptr<ZeroLevelSearch> search_;  // null until there is hope
+  std::optional<ZeroLevelStream> stream_;
+};
 
 }  // namespace lacerta
 

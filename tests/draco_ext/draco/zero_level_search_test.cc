@@ -104,17 +104,37 @@ TEST_F(ZeroLevelSearchTest, SimplerOnlyWhereItBeatsWhatThereIs) {
   coded.meets_target = true;
   coded.psnr = 50.1;
   coded.stream.base = Bytes(6000);
-  const std::optional<ZeroLevelStream> simpler = SimplerIfBetter(mesh_, SimplificationSequence(mesh_), meter_, target, coded).value();
-  ASSERT_TRUE(simpler.has_value());
-  EXPECT_TRUE(simpler->meets_target);
-  EXPECT_LT(simpler->stream.size(), coded.stream.size());
+  const SimplificationSequence sequence(mesh_);
+  SimplerStream simpler(mesh_, sequence, meter_, target);
+  ASSERT_TRUE(simpler.IsBetterThan(coded).value());
+  EXPECT_TRUE(simpler.stream().meets_target);
+  EXPECT_LT(simpler.stream().stream.size(), coded.stream.size());
   for (const double part : {0.5, 0.95}) {
-    coded.stream.base = Bytes(static_cast<size_t>(part * static_cast<double>(simpler->stream.size())));
-    EXPECT_FALSE(SimplerIfBetter(mesh_, SimplificationSequence(mesh_), meter_, target, coded).value().has_value());
+    coded.stream.base = Bytes(static_cast<size_t>(part * static_cast<double>(simpler.stream().stream.size())));
+    EXPECT_FALSE(SimplerStream(mesh_, sequence, meter_, target).IsBetterThan(coded).value());
   }
   coded.stream.base = Bytes(coded.stream.base.size() / 2);
   coded.meets_target = false;
-  EXPECT_TRUE(SimplerIfBetter(mesh_, SimplificationSequence(mesh_), meter_, target, coded).value().has_value());
+  EXPECT_TRUE(SimplerStream(mesh_, sequence, meter_, target).IsBetterThan(coded).value());
+}
+
+TEST_F(ZeroLevelSearchTest, TellsBeforeThereIsAStreamWhetherItTakesFewerBytes) {
+  const ResolvedTarget target{false, 0, 50}, rate{true, 2000, 0};
+  const ZeroLevelStream least = CodeZeroLevel(mesh_, meter_, target).value();
+  const auto bytes = static_cast<double>(least.stream.size());
+  const SimplificationSequence sequence(mesh_);
+  SimplerStream simpler(mesh_, sequence, meter_, target);
+  EXPECT_FALSE(simpler.TakesFewerThan(0.7 * bytes).value());
+  ASSERT_TRUE(simpler.TakesFewerThan(1.5 * bytes).value());
+  EXPECT_EQ(simpler.stream().stream, least.stream);
+  EXPECT_FALSE(simpler.TakesFewerThan(0.7 * bytes).value());
+  MeasuredStream coded;
+  coded.meets_target = true;
+  coded.psnr = 50.1;
+  coded.stream.base = Bytes(2 * least.stream.size());
+  EXPECT_TRUE(simpler.IsBetterThan(coded).value());
+  EXPECT_EQ(simpler.stream().stream, least.stream);
+  EXPECT_FALSE(SimplerStream(mesh_, sequence, meter_, rate).TakesFewerThan(1e9).value());
 }
 
 // Of large meshes one look tells whether a simplified one is worth trying: not at a fifth of the bytes it takes, never where it is better.
@@ -129,14 +149,14 @@ TEST_F(ZeroLevelSearchTest, LargeMeshesAreNotDismissedWhereASimplerOneIsBetter) 
     MeasuredStream coded;
     coded.meets_target = true;
     coded.psnr = 55.1;
-    const auto simpler = [&](double share) {
+    SimplerStream simpler(mesh, sequence, meter, target);
+    const auto is_better_than = [&](double share) {
       coded.stream.base = Bytes(static_cast<size_t>(share * static_cast<double>(least.stream.size())));
-      return SimplerIfBetter(mesh, sequence, meter, target, coded).value();
+      return simpler.IsBetterThan(coded).value();
     };
-    const std::optional<ZeroLevelStream> better = simpler(1.3);
-    ASSERT_TRUE(better.has_value());
-    EXPECT_EQ(better->stream, least.stream);
-    EXPECT_FALSE(simpler(0.2).has_value());
+    EXPECT_FALSE(is_better_than(0.2));
+    ASSERT_TRUE(is_better_than(1.3));
+    EXPECT_EQ(simpler.stream().stream, least.stream);
   }
 }
 
