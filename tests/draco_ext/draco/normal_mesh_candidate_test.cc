@@ -7,7 +7,9 @@
 #include <memory>
 #include <utility>
 
+#include "common/base_tags.h"
 #include "draco_ext/remesh/remeshing.h"
+#include "encoder/step_law.h"
 #include "lacerta/clean.h"
 #include "lacerta/surface_distance.h"
 #include "remesh/reversal.h"
@@ -129,6 +131,34 @@ TEST(NormalMeshCandidate, BordersThatShareOnlyTheirEndsAreNotJoined) {
   }
   EXPECT_NEAR(psnr[1], psnr[0], 3.0);
   EXPECT_NEAR(psnr[0], 83.0, 5.0);
+}
+
+// Decoders join what lies at one point of the lattice. A coarse one puts vertices together that have nothing to do with each other, which
+// does no harm, and would close the eye, which does: then it is finer than the slope asks for.
+TEST(NormalMeshCandidate, TheLatticeJoinsTheCutsAndNoOtherBorders) {
+  const TriangleMesh mesh = Eye(0);
+  const SurfaceParts parts = SplitSurface(mesh);
+  const CollapseHistory history = Decimate(parts.refined, parts.topology, {8, 12, 0.2});
+  const InputSurface surface(parts.refined, parts.topology);
+  const NormalMeshCandidate candidate = NormalMeshCandidate::Create({surface, history, {}}, 40, 2).value();
+  const SemiRegularMesh& remesh = candidate.normal_mesh().mesh;
+  ASSERT_FALSE(remesh.tags.joined.empty());
+  const Topology wanted = BuildTopology(remesh.num_base_vertices, remesh.base_triangles, remesh.tags).value();
+  int sharing = 0, finer = 0;
+  for (double lambda = 1e-10; lambda < 1e-4; lambda *= 4) {
+    SCOPED_TRACE(lambda);
+    const CodedStream stream = candidate.Code(lambda, EncodeMode::kDefault).value();
+    BaseTags tags = remesh.tags;
+    tags.joined = FirstAtSamePoint(stream.coded.base.lattice);
+    sharing += tags.joined != remesh.tags.joined;
+    Topology decoded = wanted;
+    ASSERT_TRUE(SetTags(tags, &decoded).ok());
+    EXPECT_EQ(decoded.edges, wanted.edges);
+    EXPECT_EQ(decoded.master, wanted.master);
+    finer += static_cast<double>(stream.coded.base.step) < 0.6 * BaseStepForSlope(lambda, remesh.num_base_vertices);
+  }
+  EXPECT_GT(sharing, 0);
+  EXPECT_GT(finer, 0);
 }
 
 }  // namespace
