@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -111,6 +112,23 @@ std::string ReasonForMiss(const MeasuredStream& coded, const ResolvedTarget& tar
   if (target.is_rate && bytes < 0.98 * target.bytes) return "no stream found that fills the bytes; this is the nearest";
   if (!target.is_rate && coded.psnr >= target.psnr + 0.3) return "no stream found with less to spare; this is the nearest";
   return "";
+}
+
+// What floats do to a mesh far from zero, where a stream that misses a PSNR may owe it to that; else empty.
+std::string ReasonInFloats(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target) {
+  constexpr double kHeadroom = 6;  // dB: decoded positions are rounded, too, and so is all that leads to them
+  Vec3f extent;
+  for (const Vec3f& p : mesh.positions) {
+    for (int c = 0; c < 3; ++c) extent[c] = std::max(extent[c], std::fabs(p[c]));
+  }
+  double squared = 0;  // of the error of rounding along an axis, in the mean
+  for (int c = 0; c < 3; ++c) {
+    const double spacing = std::nextafter(extent[c], std::numeric_limits<float>::max()) - extent[c];
+    squared += spacing * spacing / (3 * 12);
+  }
+  const double psnr = Psnr(std::sqrt(squared), meter.diagonal());
+  if (psnr > target.psnr + kHeadroom) return "";
+  return "; so far from zero floats hold positions to " + std::to_string(std::lround(psnr)) + " dB: move the mesh nearer to zero";
 }
 
 // In the form asked for: the custom form adds a header.
@@ -267,6 +285,8 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
     const char* const miss = zero.meets_target ? "" : "; the target is out of reach, this is the nearest";
     encoded = FromZeroLevel(std::move(zero), report, encoded.status().message() + miss);
   }
+  EncodeReport& made = encoded.value().mesh.report;
+  if (!target.is_rate && made.levels.back().psnr < target.psnr) made.reason += ReasonInFloats(mesh, meter, target);
   if (options.progress) options.progress(1.0, "done");
   return InForm(options.form, std::move(encoded).value());
 }

@@ -25,6 +25,7 @@ namespace lacerta {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Kind = EncodeTarget::Kind;
 
 // One flipped edge, and an odd number of triangles around: no subdivision connectivity.
@@ -398,6 +399,12 @@ TEST(EncodeMeshTest, AnUnreachableTargetIsReportedAsSuch) {
   EXPECT_GT(encoded.stream.size(), 100u);
   EXPECT_THAT(encoded.report.reason, HasSubstr("out of reach"));
   EXPECT_TRUE(DecodeMesh(encoded.stream, DecodeOptions()).ok());
+  EXPECT_THAT(encoded.report.reason, Not(HasSubstr("far from zero")));
+  TriangleMesh far = shapes::BumpySphere(3, 0.2f, 0.002f);
+  for (Vec3f& p : far.positions) p.x += 1e5f;
+  EncodeOptions options = OptionsFor(Kind::kPsnr, 90);
+  options.levels = LevelChoice::kNever;
+  EXPECT_THAT(EncodeOrDie(far, options).report.reason, HasSubstr("so far from zero floats hold positions to"));
 }
 
 // At 50 dB this scan is a few hundred bytes, and one coefficient more or less decides which mode is ahead.
