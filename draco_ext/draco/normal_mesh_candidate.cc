@@ -11,67 +11,26 @@
 #include "encoder/step_law.h"
 #include "encoder/stream_writer.h"
 #include "encoder/vertex_repair.h"
-#include "remesh/base_parts.h"
-#include "remesh/reversal.h"
+#include "remesh/surface_fit.h"
 
 namespace lacerta {
-namespace {
-
-// Of a base that is made finer where the remesh is reversed: a surface that needs more is better served by the next size.
-constexpr double kLargestGrowth = 1.25;
-constexpr double kFreeVertices = 8;  // that any base may have more
-
-// The remesh of a base, and what of that is reversed.
-struct Remeshed {
-  std::unique_ptr<PiercedBase> base;
-  NormalMesh mesh;
-  ReversedPart reversed;
-};
-
-// held: grows where another remesh, without those collapses, is due; *is_due says so.
-Remeshed RemeshOver(std::unique_ptr<PiercedBase> base, const InputSurface& surface, int num_levels, std::vector<uint32_t>* held, bool* is_due) {
-  Remeshed result;
-  result.mesh = base->Remesh(num_levels);
-  result.reversed = FindReversed(surface, result.mesh);
-  *is_due = HoldReversed(result.reversed, base->domain(), held);
-  result.base = std::move(base);
-  return result;
-}
-
-}  // namespace
-
 NormalMeshCandidate::NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh)
     : base_(std::move(base)),
       normal_mesh_(std::move(normal_mesh)),
       target_(MakeSurfaceTarget(normal_mesh_)),
       detail_scales_(DetailScales(target_)) {}
 
-StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels,
-                                                          BaseCoding coding, std::unique_ptr<PiercedBase> begun,
-                                                          std::unique_ptr<PiercedBase>* pierced) {
-  const auto num_vertices = static_cast<uint32_t>(input.surface.mesh().positions.size());
-  const uint32_t time = std::min(input.history.num_collapses(), num_vertices - std::min(num_vertices, num_base_vertices));
-  if (!begun) {
-    LACERTA_ASSIGN_OR_RETURN(begun, PiercedBase::Make(input, time, {}, coding));
-  }
-  std::vector<uint32_t> held = begun->held();
-  bool is_due = false;
-  Remeshed best = RemeshOver(std::move(begun), input.surface, num_levels, &held, &is_due);
-  const double first_base = num_vertices - time + static_cast<double>(input.still.positions.size());  // nothing held
-  const double largest_base = std::max(kLargestGrowth * first_base, first_base + kFreeVertices);
-  for (int round = 1; is_due && round < kReversalRounds; ++round) {
-    LACERTA_ASSIGN_OR_RETURN(std::unique_ptr<PiercedBase> finer, PiercedBase::Make(input, time, held, coding));
-    if (finer->num_vertices() > largest_base) break;
-    Remeshed other = RemeshOver(std::move(finer), input.surface, num_levels, &held, &is_due);
-    if (other.reversed.share < best.reversed.share) best = std::move(other);
-  }
-  CodedBase base = best.base->base();
-  if (pierced != nullptr) {
-    *pierced = std::move(best.base);
-  } else {
-    best.base.reset();  // as large as what comes now
-  }
-  return NormalMeshCandidate(std::move(base), std::move(best.mesh));
+NormalMeshCandidate NormalMeshCandidate::Fitted(std::unique_ptr<PiercedBase> pierced, const InputSurface& surface) {
+  CodedBase base = pierced->base();
+  NormalMesh mesh = pierced->Remesh();
+  pierced.reset();  // as large as what comes now
+  FitToInput(surface, SurfaceFitOptions(), &mesh);
+  return NormalMeshCandidate(std::move(base), std::move(mesh));
+}
+
+StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels) {
+  LACERTA_ASSIGN_OR_RETURN(std::unique_ptr<PiercedBase> pierced, PierceUnreversed(input, num_base_vertices, num_levels));
+  return Fitted(std::move(pierced), input.surface);
 }
 
 // Whether decoders, who take base vertices at one point of the lattice for joined ones, join the borders of cuts and no others.

@@ -44,13 +44,10 @@ struct CodingSlope {
 
 class NormalMeshCandidate {
  public:
-  // The base mesh is the one that the history has at `num_base_vertices` vertices, or its coarsest if that is larger, with the
-  // still part beside it; up to a quarter or 8 vertices finer where the remesh would be reversed (remesh/reversal.h). num_levels: above
-  // the base. Fails where the base cannot be coded. pierced: where not null, becomes the base with what was pierced of it;
-  // begun: that of a candidate of the same input and size with fewer levels, or null.
-  static StatusOr<NormalMeshCandidate> Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels,
-                                              BaseCoding coding = BaseCoding::kStock, std::unique_ptr<PiercedBase> begun = nullptr,
-                                              std::unique_ptr<PiercedBase>* pierced = nullptr);
+  // The remesh of PierceUnreversed, fitted to the input (remesh/surface_fit.h).
+  static NormalMeshCandidate Fitted(std::unique_ptr<PiercedBase> pierced, const InputSurface& surface);
+  // Both at once. Fails where the base cannot be coded.
+  static StatusOr<NormalMeshCandidate> Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels);
 
   // normal_mesh: over base.mesh, in its order.
   NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);

@@ -9,7 +9,7 @@
 #include "lacerta/surface_distance.h"
 #include "remesh/base_parts.h"
 #include "remesh/piercing.h"
-#include "remesh/surface_fit.h"
+#include "remesh/reversal.h"
 
 namespace lacerta {
 
@@ -45,13 +45,46 @@ PiercedBase::PiercedBase(const RefinableSurface& input, CodedBase base, BaseDoma
       domain_(std::move(domain)),
       pierced_(surface_, domain_, positions, PiercingOptions()) {}
 
-NormalMesh PiercedBase::Remesh(int num_levels) {
+void PiercedBase::PierceTo(int num_levels) {
   while (pierced_.num_levels() < num_levels) pierced_.AddLevel();
+}
+
+NormalMesh PiercedBase::Remesh() const {
   NormalMesh result = pierced_.mesh();
   result.mesh.base_triangles = base_.mesh.triangles;
   result.mesh.tags.still = is_still_;
-  FitToInput(surface_, SurfaceFitOptions(), &result);
   return result;
+}
+
+StatusOr<std::unique_ptr<PiercedBase>> PierceUnreversed(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels,
+                                                        BaseCoding coding, std::unique_ptr<PiercedBase> begun) {
+  // Of a base that is made finer where the remesh is reversed: a surface that needs more is better served by the next size.
+  constexpr double kLargestGrowth = 1.25;
+  constexpr double kFreeVertices = 8;  // that any base may have more
+  const auto num_vertices = static_cast<uint32_t>(input.surface.mesh().positions.size());
+  const uint32_t time = std::min(input.history.num_collapses(), num_vertices - std::min(num_vertices, num_base_vertices));
+  std::unique_ptr<PiercedBase> best = std::move(begun);
+  if (!best) {
+    LACERTA_ASSIGN_OR_RETURN(best, PiercedBase::Make(input, time, {}, coding));
+  }
+  best->PierceTo(num_levels);
+  ReversedPart reversed = FindReversed(input.surface, best->refined());
+  double least = reversed.share;
+  std::vector<uint32_t> held = best->held();
+  bool is_due = HoldReversed(reversed, best->domain(), &held);
+  const double first_base = num_vertices - time + static_cast<double>(input.still.positions.size());  // nothing held
+  const double largest_base = std::max(kLargestGrowth * first_base, first_base + kFreeVertices);
+  for (int round = 1; is_due && round < kReversalRounds; ++round) {
+    LACERTA_ASSIGN_OR_RETURN(std::unique_ptr<PiercedBase> finer, PiercedBase::Make(input, time, held, coding));
+    if (finer->num_vertices() > largest_base) break;
+    finer->PierceTo(num_levels);
+    reversed = FindReversed(input.surface, finer->refined());
+    is_due = HoldReversed(reversed, finer->domain(), &held);
+    if (reversed.share >= least) continue;
+    least = reversed.share;
+    best = std::move(finer);
+  }
+  return best;
 }
 
 }  // namespace lacerta

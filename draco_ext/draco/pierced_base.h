@@ -26,8 +26,13 @@ class PiercedBase {
   PiercedBase(const PiercedBase&) = delete;
   PiercedBase& operator=(const PiercedBase&) = delete;
 
-  // The remesh with num_levels, no fewer than ever before, fitted to the input. Only levels that are new are pierced.
-  NormalMesh Remesh(int num_levels);
+  // Pierces the levels that are missing up to num_levels.
+  void PierceTo(int num_levels);
+
+  // The remesh over base().mesh, in its order: its vertices are points of the input.
+  NormalMesh Remesh() const;
+  // The same without the still part.
+  const NormalMesh& refined() const { return pierced_.mesh(); }
 
   const CodedBase& base() const { return base_; }  // at a nominal step
   const BaseDomain& domain() const { return domain_; }
@@ -46,6 +51,12 @@ class PiercedBase {
   const BaseDomain domain_;
   GrowingNormalMesh pierced_;
 };
+
+// The base that the history has at `num_base_vertices` vertices, or its coarsest if that is larger, with the still part beside it and
+// num_levels pierced; up to a quarter or 8 vertices finer where the remesh would be reversed (remesh/reversal.h). begun: that of the same input
+// and size with fewer levels, from which it goes on, or null. Fails where the base cannot be coded.
+StatusOr<std::unique_ptr<PiercedBase>> PierceUnreversed(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels,
+                                                        BaseCoding coding = BaseCoding::kStock, std::unique_ptr<PiercedBase> begun = nullptr);
 
 }  // namespace lacerta
 

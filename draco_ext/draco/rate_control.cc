@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "draco/decoded_distance.h"
 #include "draco/for_each_candidate.h"
+#include "lacerta/decoder.h"
 
 namespace lacerta {
 namespace {
@@ -162,23 +164,24 @@ class Ladder {
     for (auto& [r, rung] : made) rungs_[r] = std::move(rung);
   }
 
+  double PsnrOf(const TriangleMesh& remesh) const {
+    constexpr uint64_t kRoughSamples = 30'000;
+    return Psnr(DecodedDistance(meter_, remesh, SurfaceDistanceOptions::RmsOnly(kRoughSamples)), meter_.diagonal());
+  }
+
   // Makes the candidate of a rung.
   Status Remesh(int number, Rung* rung) const {
-    const double goal = TypicalPsnr(target_, num_input_);
-    constexpr double kComfort = 12;  // dB: a remesh nearer to the goal than that costs bytes and gets one level more
+    // dB over the goal of a remesh before it is fitted: one nearer to the goal costs bytes and gets one level more.
+    constexpr double kComfort = 10;
     std::unique_ptr<PiercedBase> pierced;
     for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
-      const bool may_grow = RungSize(number) * std::pow(4.0, levels + 1) < MostVertices(num_input_);
-      LACERTA_ASSIGN_OR_RETURN(NormalMeshCandidate candidate, NormalMeshCandidate::Create(surface_, RungSize(number), levels, target_.base_coding,
-                                                                                          std::move(pierced), may_grow ? &pierced : nullptr));
-      rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(candidate));
-      constexpr uint64_t kRoughSamples = 30'000;
-      const TriangleMesh remesh = rung->candidate->RemeshedSurface();
-      LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meter_.Measure(remesh, SurfaceDistanceOptions::RmsOnly(kRoughSamples)));
-      rung->remesh_psnr = Psnr(distance.Rms(), meter_.diagonal());
-      const double next_vertices = 4 * static_cast<double>(remesh.positions.size());
-      if (rung->remesh_psnr > goal + kComfort || next_vertices > MostVertices(num_input_)) break;
+      LACERTA_ASSIGN_OR_RETURN(pierced, PierceUnreversed(surface_, RungSize(number), levels, target_.base_coding, std::move(pierced)));
+      const double next_vertices = 4 * static_cast<double>(pierced->refined().mesh.positions.size());
+      if (next_vertices > MostVertices(num_input_)) break;
+      if (PsnrOf(MeshAtLevel(pierced->Remesh().mesh, levels).value()) > TypicalPsnr(target_, num_input_) + kComfort) break;
     }
+    rung->candidate = std::make_unique<NormalMeshCandidate>(NormalMeshCandidate::Fitted(std::move(pierced), surface_.surface));
+    rung->remesh_psnr = PsnrOf(rung->candidate->RemeshedSurface());
     rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_, effort_);
     return Status();
   }

@@ -25,33 +25,34 @@ struct Sample {
   float gap = 0;
 };
 
+double DoubledArea(const TriangleMesh& mesh, uint32_t face) { return Norm(AreaVector(mesh.positions, mesh.triangles[face])); }
+
 // Walks through points spread evenly over the area of a mesh: one face after the other gets its share, in a low-discrepancy sequence.
 class PointWalk {
  public:
-  PointWalk(const TriangleMesh& mesh, double points_per_area) : mesh_(&mesh), points_per_area_(points_per_area) {}
+  // faces: of the mesh, in the order of the walk. Keeps references to both.
+  PointWalk(const TriangleMesh& mesh, const std::vector<uint32_t>& faces, double points_per_area)
+      : mesh_(&mesh), faces_(&faces), points_per_area_(points_per_area) {}
 
   // Whether there is one more; it is on face() then, at weights().
   bool Next() {
-    for (; !(due_ >= 1); due_ += points_per_area_ * DoubledArea(*mesh_, face_++)) {
-      if (face_ == mesh_->triangles.size()) return false;
+    for (; !(due_ >= 1); due_ += points_per_area_ * DoubledArea(*mesh_, (*faces_)[next_++])) {
+      if (next_ == faces_->size()) return false;
     }
     due_ -= 1;
     ++num_points_;
     return true;
   }
 
-  uint32_t face() const { return face_ - 1; }
+  uint32_t face() const { return (*faces_)[next_ - 1]; }
   Vec3d weights() const { return TrianglePoint(num_points_ - 1, 0); }
-
-  static double DoubledArea(const TriangleMesh& mesh, uint32_t face) {
-    return Norm(AreaVector(mesh.positions, mesh.triangles[face]));
-  }
 
  private:
   const TriangleMesh* mesh_;
+  const std::vector<uint32_t>* faces_;
   double points_per_area_;
   double due_ = 0;
-  uint32_t face_ = 0;
+  size_t next_ = 0;  // in faces_
   uint64_t num_points_ = 0;
 };
 
@@ -77,13 +78,13 @@ Sample SampleAt(const InputSurface& surface, uint32_t face, const Vec3d& weights
   return sample;
 }
 
-// Samples of about `count` points of the input.
+// Samples of about `count` points of the input, in an order in which neighbors are near each other: what is near one is near the next.
 std::vector<Sample> TakeSamples(const InputSurface& surface, double count, const TriangleMesh& remesh, const std::vector<Vec3f>& normals) {
   constexpr size_t kBlockSize = 512;  // fixed, so that hints do not depend on the threads
   const TriangleMesh& input = surface.mesh();
   double area = 0;
-  for (uint32_t f = 0; f < input.triangles.size(); ++f) area += PointWalk::DoubledArea(input, f);
-  PointWalk walk(input, area > 0 ? count / area : 0);
+  for (uint32_t f = 0; f < input.triangles.size(); ++f) area += DoubledArea(input, f);
+  PointWalk walk(input, surface.tree().faces_in_tree_order(), area > 0 ? count / area : 0);
   std::vector<PointWalk> block_starts;
   size_t num_points = 0;
   for (PointWalk before = walk; walk.Next(); before = walk, ++num_points) {
