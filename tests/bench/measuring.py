@@ -125,3 +125,12 @@ def write_csv(path, rows):
 def write_markdown(path, *paragraphs):
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("\n".join(paragraphs))
+
+
+def gnuplot(png, settings, lines):
+    """Draws named lines of points: [(title, style, [(x, y), ...]), ...]."""
+    script = ['set terminal pngcairo size 900,640 font "sans,11"', f'set output "{png}"', "set grid", settings]
+    for i, (_, _, line) in enumerate(lines):
+        script += [f"$line{i} << EOD", *(f"{x} {y}" for x, y in line), "EOD"]
+    script.append("plot " + ", ".join(f'$line{i} with {style} title "{title}"' for i, (title, style, _) in enumerate(lines)))
+    subprocess.run(["gnuplot"], input="\n".join(script) + "\n", text=True, check=True)

@@ -55,15 +55,15 @@ TEST(NormalMeshCandidate, WithMoreLevelsGoesOnFromTheOneWithFewer) {
     const InputSurface surface(input, testing::TopologyOf(input));
     const TriangleMesh still;
     const RefinableSurface refinable{surface, history, still};
-    std::unique_ptr<PiercedBase> pierced;
-    const NormalMeshCandidate fewer = NormalMeshCandidate::Create(refinable, 16, 2, BaseCoding::kStock, nullptr, &pierced).value();
-    ASSERT_NE(pierced, nullptr);
+    std::unique_ptr<PiercedBase> pierced = PierceUnreversed(refinable, 16, 2).value();
+    const uint32_t num_vertices_before = pierced->num_vertices();
     const bool is_held = !pierced->held().empty();
-    const NormalMeshCandidate more = NormalMeshCandidate::Create(refinable, 16, 3, BaseCoding::kStock, std::move(pierced)).value();
+    pierced = PierceUnreversed(refinable, 16, 3, BaseCoding::kStock, std::move(pierced)).value();
+    EXPECT_GE(pierced->num_vertices(), num_vertices_before);
+    EXPECT_LE(pierced->num_vertices(), 16u + 8);
+    const NormalMeshCandidate more = NormalMeshCandidate::Fitted(std::move(pierced), surface);
     const NormalMeshCandidate anew = NormalMeshCandidate::Create(refinable, 16, 3).value();
     EXPECT_EQ(more.num_levels(), 3);
-    EXPECT_GE(more.num_base_vertices(), fewer.num_base_vertices());
-    EXPECT_LE(more.num_base_vertices(), 16u + 8);
     EXPECT_LT(FindReversed(surface, more.normal_mesh()).share, 1e-3);
     EXPECT_TRUE(is_held || more.RemeshedSurface().positions == anew.RemeshedSurface().positions);
   }
