@@ -260,7 +260,6 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
     const double edges = SquaredNorm(pa - pu) + SquaredNorm(pb - pu) + SquaredNorm(pb - pa);
     worst_aspect = std::max(worst_aspect, edges / (2 * std::sqrt(3.0) * area2));  // 1 for the equilateral triangle
   }
-  if (!KeepsTopology(fan, kept)) return kNotSound;
   const double valence = static_cast<double>(vertex_faces_[u].size() + fan.faces.size()) - 4;
   // A triangle that stands for much more of the input than its own area hides a limb that its samples will miss: quadrics see
   // only how far the limb's sides are away, which is not much, not how long it is (docs/decisions/0004-limbs.md).
@@ -291,8 +290,9 @@ Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
   }
   std::sort(least.begin(), least.begin() + count, [](const Candidate& a, const Candidate& b) { return a.cost < b.cost || (a.cost == b.cost && a.kept < b.kept); });
   for (int i = 0; i < count && least[i].cost <= best.cost; ++i) {
-    const double cost = Cost(v, fan, chart, old_normals, least[i].kept);
-    if (cost < best.cost || (cost == best.cost && least[i].kept < best.kept)) best = {cost, least[i].kept};
+    const Candidate candidate{Cost(v, fan, chart, old_normals, least[i].kept), least[i].kept};
+    const bool is_better = candidate.cost < best.cost || (candidate.cost == best.cost && candidate.kept < best.kept);
+    if (is_better && KeepsTopology(fan, candidate.kept)) best = candidate;  // which takes longer to tell than the cost
   }
   return best;
 }
