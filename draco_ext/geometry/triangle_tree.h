@@ -77,6 +77,7 @@ class TriangleTree {
 
  private:
   static constexpr int kWidth = 4;  // children of a node
+  static constexpr uint32_t kLeafSize = 4;
 
   // Boxes of the children as structure of arrays and by center and half size, so that the compiler tests four at once; relative to
   // the origin of the tree.
@@ -92,6 +93,8 @@ class TriangleTree {
 
   uint32_t BuildNode(const Building& building, Reference* first, Reference* last, int depth, std::vector<Node>* nodes) const;
   Node GroupNode(const TriangleMesh& mesh, uint32_t first_face, uint32_t first_slot) const;
+  void LowerBounds(uint32_t first, const Vec3f& point, std::array<float, kLeafSize>* bounds) const;
+  void TestLeaf(uint32_t first, uint32_t count, Search* search) const;  // count: at most kLeafSize
   void TestSlot(uint32_t slot, Search* search) const;
   ClosestPointResult Finish(const Search& search) const;
   void Traverse(Search* search) const;
@@ -105,6 +108,7 @@ class TriangleTree {
   std::vector<uint32_t> slots_;   // per face of the mesh; kNone for those left out
   // The middle of the mesh: boxes relative to it are tight however far the mesh is from zero.
   Vec3f origin_;
+  float scale_ = 1.0f;    // a power of two, by which the largest coordinate from there is near a thousand
   float padding_ = 0.0f;  // by which every box is larger than what it holds: a few ulps of the largest coordinate in it
 };
 
