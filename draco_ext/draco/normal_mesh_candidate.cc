@@ -14,23 +14,19 @@
 #include "remesh/surface_fit.h"
 
 namespace lacerta {
+
 NormalMeshCandidate::NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh)
     : base_(std::move(base)),
       normal_mesh_(std::move(normal_mesh)),
       target_(MakeSurfaceTarget(normal_mesh_)),
       detail_scales_(DetailScales(target_)) {}
 
-NormalMeshCandidate NormalMeshCandidate::Fitted(std::unique_ptr<PiercedBase> pierced, const InputSurface& surface) {
+NormalMeshCandidate NormalMeshCandidate::Fitted(std::unique_ptr<PiercedBase> pierced, const InputSurface& input) {
   CodedBase base = pierced->base();
   NormalMesh mesh = pierced->Remesh();
   pierced.reset();  // as large as what comes now
-  FitToInput(surface, SurfaceFitOptions(), &mesh);
+  FitToInput(input, SurfaceFitOptions(), &mesh);
   return NormalMeshCandidate(std::move(base), std::move(mesh));
-}
-
-StatusOr<NormalMeshCandidate> NormalMeshCandidate::Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels) {
-  LACERTA_ASSIGN_OR_RETURN(std::unique_ptr<PiercedBase> pierced, PierceUnreversed(input, num_base_vertices, num_levels));
-  return Fitted(std::move(pierced), input.surface);
 }
 
 // Whether decoders, who take base vertices at one point of the lattice for joined ones, join the borders of cuts and no others.

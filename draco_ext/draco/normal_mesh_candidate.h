@@ -9,7 +9,6 @@
 
 #include "draco/base_mesh_codec.h"
 #include "draco/pierced_base.h"
-#include "draco/refinable_surface.h"
 #include "encoder/coefficient_descent.h"
 #include "encoder/step_law.h"
 #include "encoder/stream_writer.h"
@@ -44,10 +43,8 @@ struct CodingSlope {
 
 class NormalMeshCandidate {
  public:
-  // The remesh of PierceUnreversed, fitted to the input (remesh/surface_fit.h).
-  static NormalMeshCandidate Fitted(std::unique_ptr<PiercedBase> pierced, const InputSurface& surface);
-  // Both at once. Fails where the base cannot be coded.
-  static StatusOr<NormalMeshCandidate> Create(const RefinableSurface& input, uint32_t num_base_vertices, int num_levels);
+  // What was pierced, fitted to the input (remesh/surface_fit.h).
+  static NormalMeshCandidate Fitted(std::unique_ptr<PiercedBase> pierced, const InputSurface& input);
 
   // normal_mesh: over base.mesh, in its order.
   NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "draco_ext/draco/candidates.h"
 #include "draco_ext/remesh/remeshing.h"
 #include "shapes/shapes.h"
 
@@ -20,7 +21,7 @@ class CandidateSearchTest : public ::testing::Test {
         surface_(mesh_, testing::TopologyOf(mesh_)),
         history_(testing::Decimated(mesh_)),
         meter_(SurfaceDistanceMeter::Create(mesh_).value()),
-        candidate_(NormalMeshCandidate::Create({surface_, history_, {}}, 60, 3).value()),
+        candidate_(testing::MakeCandidate({surface_, history_, {}}, 60, 3)),
         remesh_psnr_(PsnrOf(candidate_.RemeshedSurface())) {}
 
   double PsnrOf(const TriangleMesh& mesh) const { return Psnr(meter_.Measure(mesh).value().Rms(), meter_.diagonal()); }
@@ -81,7 +82,7 @@ TEST(CandidateSearchOfNoiseTest, KeepsWhatItsScoreForesees) {
     double below;  // the remesh, dB
   };
   for (const Case& c : {Case{60, 3, 7.0}, Case{250, 4, 4.0}}) {
-    const NormalMeshCandidate candidate = NormalMeshCandidate::Create({surface, history, {}}, c.num_base_vertices, c.num_levels).value();
+    const NormalMeshCandidate candidate = testing::MakeCandidate({surface, history, {}}, c.num_base_vertices, c.num_levels);
     const double remesh_psnr = Psnr(meter.Measure(candidate.RemeshedSurface()).value().Rms(), meter.diagonal());
     CandidateSearch search(candidate, remesh_psnr, meter, {false, 0, remesh_psnr - c.below}, EncodeMode::kDefault);
     const double log_bytes = search.Score().value();

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/base_tags.h"
+#include "draco_ext/draco/candidates.h"
 #include "draco_ext/remesh/remeshing.h"
 #include "encoder/step_law.h"
 #include "lacerta/clean.h"
@@ -27,7 +28,7 @@ struct Made {
 Made Create(const TriangleMesh& input, uint32_t num_base_vertices) {
   const CollapseHistory history = testing::Decimated(input, {8, 12, 0.2});
   const InputSurface surface(input, testing::TopologyOf(input));
-  const NormalMeshCandidate candidate = NormalMeshCandidate::Create({surface, history, {}}, num_base_vertices, 3).value();
+  const NormalMeshCandidate candidate = testing::MakeCandidate({surface, history, {}}, num_base_vertices, 3);
   return {candidate.num_base_vertices(), FindReversed(surface, candidate.normal_mesh()).share};
 }
 
@@ -62,7 +63,7 @@ TEST(NormalMeshCandidate, WithMoreLevelsGoesOnFromTheOneWithFewer) {
     EXPECT_GE(pierced->num_vertices(), num_vertices_before);
     EXPECT_LE(pierced->num_vertices(), 16u + 8);
     const NormalMeshCandidate more = NormalMeshCandidate::Fitted(std::move(pierced), surface);
-    const NormalMeshCandidate anew = NormalMeshCandidate::Create(refinable, 16, 3).value();
+    const NormalMeshCandidate anew = testing::MakeCandidate(refinable, 16, 3);
     EXPECT_EQ(more.num_levels(), 3);
     EXPECT_LT(FindReversed(surface, more.normal_mesh()).share, 1e-3);
     EXPECT_TRUE(is_held || more.RemeshedSurface().positions == anew.RemeshedSurface().positions);
@@ -73,7 +74,7 @@ TEST(NormalMeshCandidate, ADescentGoesOnFromAStreamToACoarserOne) {
   const TriangleMesh input = shapes::BumpySphere(5, 0.1f, 0.003f);
   const CollapseHistory history = testing::Decimated(input);
   const InputSurface surface(input, testing::TopologyOf(input));
-  const NormalMeshCandidate candidate = NormalMeshCandidate::Create({surface, history, {}}, 60, 3).value();
+  const NormalMeshCandidate candidate = testing::MakeCandidate({surface, history, {}}, 60, 3);
   for (const double lambda : {1e-10, 1e-9, 1e-8}) {
     SCOPED_TRACE(lambda);
     const auto code = [&](double slope, int passes, const CodedSurface* from) {
@@ -118,7 +119,7 @@ TEST(NormalMeshCandidate, BordersThatShareOnlyTheirEndsAreNotJoined) {
     EXPECT_EQ(parts.report.split_vertices, touches ? 2u : 0u);
     const CollapseHistory history = Decimate(parts.refined, parts.topology, {8, 12, 0.2});
     const InputSurface surface(parts.refined, parts.topology);
-    const NormalMeshCandidate candidate = NormalMeshCandidate::Create({surface, history, {}}, 8, 4).value();
+    const NormalMeshCandidate candidate = testing::MakeCandidate({surface, history, {}}, 8, 4);
     EXPECT_LE(candidate.num_base_vertices(), 12u);
     const SemiRegularMesh& base = candidate.normal_mesh().mesh;
     const Topology topology = BuildTopology(base.num_base_vertices, base.base_triangles, base.tags).value();
