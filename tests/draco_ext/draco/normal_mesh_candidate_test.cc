@@ -141,7 +141,7 @@ TEST(NormalMeshCandidate, TheLatticeJoinsTheCutsAndNoOtherBorders) {
   const SurfaceParts parts = SplitSurface(mesh);
   const CollapseHistory history = Decimate(parts.refined, parts.topology, {8, 12, 0.2});
   const InputSurface surface(parts.refined, parts.topology);
-  const NormalMeshCandidate candidate = NormalMeshCandidate::Create({surface, history, {}}, 40, 2).value();
+  const NormalMeshCandidate candidate = testing::MakeCandidate({surface, history, {}}, 40, 2);
   const SemiRegularMesh& remesh = candidate.normal_mesh().mesh;
   ASSERT_FALSE(remesh.tags.joined.empty());
   const Topology wanted = BuildTopology(remesh.num_base_vertices, remesh.base_triangles, remesh.tags).value();
