@@ -146,6 +146,25 @@ TEST(CodeAtTargetTest, ReportsStages) {
   }
 }
 
+TEST(CodeAtTargetTest, GivesUpWhereItIsOutdone) {
+  const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
+  const auto code = [&](const ResolvedTarget& target, double bytes, std::vector<double>* asked) {
+    return CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, target, EncodeMode::kDefault, {}, EffortOf(Effort::kFast), [&](double least) {
+      asked->push_back(least);
+      return least > bytes;
+    });
+  };
+  const ResolvedTarget psnr{false, 0, 54};
+  std::vector<double> asked, asked_before, asked_at_a_rate;
+  const auto size = static_cast<double>(code(psnr, 1e9, &asked).value().measured.stream.size());
+  ASSERT_GE(asked.size(), 2u);
+  for (const double least : asked) EXPECT_LT(least, size) << "what the stream takes at least";
+  EXPECT_GT(asked.back(), 0.6 * size);
+  EXPECT_EQ(code(psnr, 0.5 * size, &asked_before).status().code(), StatusCode::kUnsupported);
+  EXPECT_TRUE(code({true, size, 0}, 0, &asked_at_a_rate).ok());
+  EXPECT_TRUE(asked_at_a_rate.empty());
+}
+
 TEST(CodeAtTargetTest, BeyondTheRemeshTheNearestIsReturned) {
   const Coder coder(shapes::CreasedBox(8));  // creases that a smooth remesh rounds
   const ChosenStream chosen = coder.Code({false, 0, 120});
