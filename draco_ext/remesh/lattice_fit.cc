@@ -3,6 +3,8 @@
 #include <limits>
 
 #include "geometry/bounding_box.h"
+#include "geometry/vertex_area_vectors.h"
+#include "remesh/folds.h"
 #include "remesh/mesh_fit.h"
 
 namespace lacerta {
@@ -59,28 +61,34 @@ class LatticeDescent {
     block.AddScaledIdentity(1e-2 * block.Trace() + std::numeric_limits<double>::min());
     const Vec3d optimum = -block.Solve(slope);
     FindFlapErrors(v);
-    LatticePoint best = lattice_[v];
-    double best_cost = Cost(v, slope, best);
     const LatticePoint current = lattice_[v];
+    const int current_turned = NumTurned(v);
+    LatticePoint best = current;
+    double best_cost = Cost(v, slope, best) + CostOfTurned(current_turned);
     const Vec3d exact = (Vec3Cast<double>(mesh_.positions[v]) + optimum - origin_) * (1 / rate_.step);
     for (const LatticePoint& center : {current, LatticePoint{Round(exact.x), Round(exact.y), Round(exact.z)}}) {
       for (int i = 0; i < 27; ++i) {
         const LatticePoint p{center[0] + i % 3 - 1, center[1] + i / 3 % 3 - 1, center[2] + i / 9 - 1};
         if (SquaredNorm(MoveTo(v, p)) > kFarthest * kFarthest * rate_.step * rate_.step) continue;
-        const double cost = Cost(v, slope, p);
+        double cost = Cost(v, slope, p);
+        if (current_turned > 0) {  // by rounding: then what is best may turn it back, and must not turn more
+          moves_[v] = MoveTo(v, p);
+          const int turned = NumTurned(v);
+          if (turned > current_turned) continue;
+          cost += CostOfTurned(turned);
+        }
         if (cost < best_cost) {
           best_cost = cost;
           best = p;
         }
       }
     }
-    if (best == current) return;
     moves_[v] = MoveTo(v, best);
-    if (TurnsOver(v)) {
-      moves_[v] = MoveTo(v, current);
-    } else {
-      lattice_[v] = best;
+    if (NumTurned(v) > current_turned) {
+      best = current;
+      moves_[v] = MoveTo(v, best);
     }
+    lattice_[v] = best;
   }
 
   // Errors of the flaps around v but for its own part in them, in steps.
@@ -115,20 +123,26 @@ class LatticeDescent {
     return cost + rate_.distortion_per_bit * bits;
   }
 
-  // Whether a triangle of v that has some height against the step looks elsewhere than before rounding.
-  bool TurnsOver(uint32_t v) const {
+  Vec3d Moved(uint32_t v) const { return Vec3Cast<double>(mesh_.positions[v]) + moves_[v]; }
+
+  // The number of triangles of v that look the other way than before rounding, and of edges around it that were not folded then.
+  int NumTurned(uint32_t v) const {
+    int turned = 0;
     for (const uint32_t f : neighbors_.vertex_faces[v]) {
       const Triangle& t = mesh_.triangles[f];
-      Vec3d old_p[3], new_p[3];
-      for (int k = 0; k < 3; ++k) {
-        old_p[k] = Vec3Cast<double>(mesh_.positions[t[k]]);
-        new_p[k] = old_p[k] + moves_[t[k]];
-      }
-      const Vec3d old_normal = Cross(old_p[1] - old_p[0], old_p[2] - old_p[0]);
-      const Vec3d new_normal = Cross(new_p[1] - new_p[0], new_p[2] - new_p[0]);
-      if (Dot(old_normal, new_normal) < 0) return true;
+      const Vec3d corner = Moved(t[0]);
+      turned += Dot(AreaVector(mesh_.positions, t), Cross(Moved(t[1]) - corner, Moved(t[2]) - corner)) < 0;
     }
-    return false;
+    const auto before = [&](uint32_t u) { return Vec3Cast<double>(mesh_.positions[u]); };
+    const auto after = [&](uint32_t u) { return Moved(u); };
+    for (const uint32_t i : neighbors_.vertex_flaps[v]) turned += IsFolded(neighbors_.flaps[i], after) && !IsFolded(neighbors_.flaps[i], before);
+    return turned;
+  }
+
+  // A fold is seen, though hardly measured.
+  double CostOfTurned(int turned) const {
+    constexpr double kBits = 3;
+    return kBits * turned * rate_.distortion_per_bit;
   }
 
   static constexpr double kFarthest = 3;  // steps from where the model was made

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/vertex_area_vectors.h"
+#include "remesh/folds.h"
 
 namespace lacerta {
 namespace {
@@ -94,8 +95,8 @@ class RoundSystem {
   std::vector<double> flap_weights_;
 };
 
-// Puts back the vertices of triangles that turned over, until none has.
-void UndoFlips(const std::vector<Vec3f>& before, TriangleMesh* mesh) {
+// Puts back the vertices of triangles that turned over, or were folded onto a neighbor, until none is.
+void UndoFlips(const std::vector<Vec3f>& before, const MeshNeighbors& neighbors, TriangleMesh* mesh) {
   constexpr int kMostPasses = 10;
   bool changed = true;
   for (int pass = 0; pass < kMostPasses && changed; ++pass) {
@@ -107,6 +108,14 @@ void UndoFlips(const std::vector<Vec3f>& before, TriangleMesh* mesh) {
         changed = changed || mesh->positions[v] != before[v];
         mesh->positions[v] = before[v];
       }
+    }
+    for (const auto& flap : neighbors.flaps) {
+      const auto is_folded = [&](const std::vector<Vec3f>& positions) {
+        return IsFolded(flap, [&](uint32_t v) { return Vec3Cast<double>(positions[v]); });
+      };
+      if (!is_folded(mesh->positions) || is_folded(before)) continue;
+      for (const uint32_t v : flap) mesh->positions[v] = before[v];
+      changed = true;
     }
   }
   if (changed) mesh->positions = before;
@@ -130,7 +139,7 @@ void FitToSurface(const FitTarget& target, const MeshNeighbors& neighbors, const
     const Moves moves = RoundSystem(model, neighbors, rate, *mesh).Solve();
     const std::vector<Vec3f> before = mesh->positions;
     for (size_t v = 0; v < moves.size(); ++v) mesh->positions[v] = Vec3Cast<float>(Vec3Cast<double>(before[v]) + moves[v]);
-    UndoFlips(before, mesh);
+    UndoFlips(before, neighbors, mesh);
   }
 }
 

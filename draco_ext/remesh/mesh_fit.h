@@ -24,7 +24,8 @@ struct RateModel {
   double BitSlope(double r2) const;
 };
 
-// E + distortion_per_bit * bits, minimized by rounds of Gauss-Newton steps. A triangle that would turn over stays as it was.
+// E + distortion_per_bit * bits, minimized by rounds of Gauss-Newton steps. Triangles that would turn over, or be folded onto a
+// neighbor, stay as they were.
 void FitToSurface(const FitTarget& target, const MeshNeighbors& neighbors, const RateModel& rate, int rounds, TriangleMesh* mesh);
 
 // A mesh whose positions are origin + step * lattice.

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "lacerta/surface_distance.h"
+#include "remesh/folds.h"
 #include "remesh/simplify.h"
 #include "remesh/mesh_fit.h"
 #include "shapes/shapes.h"
@@ -61,6 +63,27 @@ TEST_F(LatticeFitTest, StaysNearAndBeginsAtZero) {
 TEST_F(LatticeFitTest, FineLatticesKeepTheFit) {
   const double fit = DistanceOf(fitted_);
   EXPECT_NEAR(DistanceOf(Fit({0.05 * fit, 0}).ToMesh()), fit, 0.01 * fit);
+}
+
+TEST(LatticeFit, TurnsBackWhatRoundingTurnedOver) {
+  TriangleMesh mesh = shapes::GridWithBorder(40, 40, 0.2f);
+  std::mt19937 random(1);
+  for (Vec3f& p : mesh.positions) p += Vec3f{static_cast<float>(random() % 17), static_cast<float>(random() % 17), 0} * 0.001f;  // 2/3 of a square
+  const FitTarget target(mesh, 10000);
+  const MeshNeighbors neighbors(mesh);
+  const double step = 0.02;
+  const auto num_folded = [&](const TriangleMesh& m) {
+    return std::count_if(neighbors.flaps.begin(), neighbors.flaps.end(), [&](const auto& flap) {
+      return IsFolded(flap, [&](uint32_t v) { return Vec3Cast<double>(m.positions[v]); });
+    });
+  };
+  TriangleMesh rounded = mesh;
+  for (Vec3f& p : rounded.positions) {
+    for (int c = 0; c < 3; ++c) p[c] = static_cast<float>(step * std::round(static_cast<double>(p[c]) / step));
+  }
+  EXPECT_EQ(num_folded(mesh), 0);
+  EXPECT_GT(num_folded(rounded), 10);
+  EXPECT_LE(num_folded(FitToLattice(mesh, target.ModelAt(mesh, neighbors), neighbors, {step, 1e-7}).ToMesh()), num_folded(rounded) / 5);
 }
 
 TEST_F(LatticeFitTest, BitsAreSavedWhereTheyWeigh) {

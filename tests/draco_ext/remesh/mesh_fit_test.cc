@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lacerta/surface_distance.h"
+#include "remesh/folds.h"
 #include "remesh/simplify.h"
 #include "shapes/shapes.h"
 
@@ -88,6 +89,23 @@ TEST(MeshFitTest, TurnsNothingOver) {
       return Cross(m.positions[t[1]] - m.positions[t[0]], m.positions[t[2]] - m.positions[t[0]]);
     };
     EXPECT_GE(Dot(normal(before), normal(fitted)), 0);
+  }
+}
+
+// Neither does a little in every round.
+TEST(MeshFitTest, FoldsNothing) {
+  for (const TriangleMesh& mesh : {shapes::SpikySphere(4), shapes::TwoHoledPlate(12)}) {
+    TriangleMesh fitted = SimplificationSequence(mesh).MeshWith(150);
+    const TriangleMesh before = fitted;
+    const MeshNeighbors neighbors(fitted);
+    FitToSurface(FitTarget(mesh, 5000), neighbors, RateModel(), 8, &fitted);
+    EXPECT_NE(fitted.positions, before.positions);
+    for (const auto& flap : neighbors.flaps) {
+      const auto is_folded = [&](const TriangleMesh& m) {
+        return IsFolded(flap, [&](uint32_t v) { return Vec3Cast<double>(m.positions[v]); });
+      };
+      EXPECT_TRUE(is_folded(before) || !is_folded(fitted));
+    }
   }
 }
 
