@@ -11,7 +11,6 @@
 #include "encoder/step_law.h"
 #include "encoder/stream_writer.h"
 #include "encoder/vertex_repair.h"
-#include "remesh/surface_fit.h"
 
 namespace lacerta {
 
@@ -20,14 +19,6 @@ NormalMeshCandidate::NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh)
       normal_mesh_(std::move(normal_mesh)),
       target_(MakeSurfaceTarget(normal_mesh_)),
       detail_scales_(DetailScales(target_)) {}
-
-NormalMeshCandidate NormalMeshCandidate::Fitted(std::unique_ptr<PiercedBase> pierced, const InputSurface& input) {
-  CodedBase base = pierced->base();
-  NormalMesh mesh = pierced->Remesh();
-  pierced.reset();  // as large as what comes now
-  FitToInput(input, SurfaceFitOptions(), &mesh);
-  return NormalMeshCandidate(std::move(base), std::move(mesh));
-}
 
 // Whether decoders, who take base vertices at one point of the lattice for joined ones, join the borders of cuts and no others.
 bool NormalMeshCandidate::JoinsTheCuts(const BaseMesh& lattice) const {

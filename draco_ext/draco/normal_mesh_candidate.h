@@ -4,11 +4,9 @@
 #define LACERTA_DRACO_NORMAL_MESH_CANDIDATE_H_
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "draco/base_mesh_codec.h"
-#include "draco/pierced_base.h"
 #include "encoder/coefficient_descent.h"
 #include "encoder/step_law.h"
 #include "encoder/stream_writer.h"
@@ -43,9 +41,6 @@ struct CodingSlope {
 
 class NormalMeshCandidate {
  public:
-  // What was pierced, fitted to the input (remesh/surface_fit.h).
-  static NormalMeshCandidate Fitted(std::unique_ptr<PiercedBase> pierced, const InputSurface& input);
-
   // normal_mesh: over base.mesh, in its order.
   NormalMeshCandidate(CodedBase base, NormalMesh normal_mesh);
 

@@ -13,6 +13,7 @@
 
 #include "draco/decoded_distance.h"
 #include "draco/for_each_candidate.h"
+#include "draco/pierced_base.h"
 #include "lacerta/decoder.h"
 
 namespace lacerta {
@@ -164,24 +165,31 @@ class Ladder {
     for (auto& [r, rung] : made) rungs_[r] = std::move(rung);
   }
 
-  double PsnrOf(const TriangleMesh& remesh) const {
+  double PsnrOf(const NormalMesh& remesh) const {
     constexpr uint64_t kRoughSamples = 30'000;
-    return Psnr(DecodedDistance(meter_, remesh, SurfaceDistanceOptions::RmsOnly(kRoughSamples)), meter_.diagonal());
+    const TriangleMesh finest = MeshAtLevel(remesh.mesh, remesh.mesh.num_levels).value();
+    return Psnr(DecodedDistance(meter_, finest, SurfaceDistanceOptions::RmsOnly(kRoughSamples)), meter_.diagonal());
   }
 
   // Makes the candidate of a rung.
   Status Remesh(int number, Rung* rung) const {
-    // dB over the goal of a remesh before it is fitted: one nearer to the goal costs bytes and gets one level more.
-    constexpr double kComfort = 10;
+    constexpr double kComfort = 12;  // dB: a remesh nearer to the goal than that costs bytes and gets one level more
+    constexpr double kMostGain = 6;  // dB that the fit brings
+    const double comfortable = TypicalPsnr(target_, num_input_) + kComfort;
     std::unique_ptr<PiercedBase> pierced;
+    std::optional<NormalMesh> fitted;
     for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
       LACERTA_ASSIGN_OR_RETURN(pierced, PierceUnreversed(surface_, RungSize(number), levels, target_.base_coding, std::move(pierced)));
-      const double next_vertices = 4 * static_cast<double>(pierced->refined().mesh.positions.size());
-      if (next_vertices > MostVertices(num_input_)) break;
-      if (PsnrOf(MeshAtLevel(pierced->Remesh().mesh, levels).value()) > TypicalPsnr(target_, num_input_) + kComfort) break;
+      const bool may_grow = 4 * static_cast<double>(pierced->refined().mesh.positions.size()) <= MostVertices(num_input_);
+      const double psnr = may_grow ? PsnrOf(pierced->Remesh()) : comfortable;
+      if (psnr <= comfortable - kMostGain) continue;  // fitted or not
+      fitted = pierced->Fitted();
+      rung->remesh_psnr = PsnrOf(*fitted);
+      if (!may_grow || rung->remesh_psnr > comfortable) break;
     }
-    rung->candidate = std::make_unique<NormalMeshCandidate>(NormalMeshCandidate::Fitted(std::move(pierced), surface_.surface));
-    rung->remesh_psnr = PsnrOf(rung->candidate->RemeshedSurface());
+    CodedBase base = pierced->base();
+    pierced.reset();  // as large as what comes now
+    rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(base), *std::move(fitted));
     rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_, effort_);
     return Status();
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/subdivision.h"
+#include "draco/pierced_base.h"
 #include "encoder/quantizer.h"
 #include "remesh/input_surface.h"
 
