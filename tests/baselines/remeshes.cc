@@ -1,7 +1,7 @@
 #include "baselines/remeshes.h"
 
 #include "baselines/maps_remesh.h"
-#include "draco/normal_mesh_candidate.h"
+#include "draco/pierced_base.h"
 #include "encoder/quantizer.h"
 #include "lacerta/surface_distance.h"
 #include "remesh/decimate.h"

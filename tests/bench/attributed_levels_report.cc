@@ -16,6 +16,7 @@
 #include "draco/candidate_search.h"
 #include "draco/decoded_distance.h"
 #include "draco/normal_mesh_candidate.h"
+#include "draco/pierced_base.h"
 #include "encoder/quantizer.h"
 #include "lacerta/surface_distance.h"
 #include "remesh/attributed_remesh.h"
