@@ -126,7 +126,7 @@ class Ladder {
     return std::max(0, static_cast<int>(std::lround(std::log(size / kFirstRung) / std::log(effort_.size_ratio))));
   }
 
-  // Of streams with a base of that rung or a larger one: some lattice points take more, none of hundreds of bases took less.
+  // Of streams with a base of that rung or a larger one. Vertices of bases usually take three bytes and more.
   double LeastBytesFrom(int rung) const { return kFewestBytesPerVertex * RungSize(rung); }
 
   // Whether rung a scores so much worse than b that it hardly is a fluke: neighbouring rungs are rarely further from the smooth curve
