@@ -34,6 +34,18 @@ float LargestCoordinate(const TriangleMesh& mesh) {
   return largest;
 }
 
+void ExpectNearestPoints(const TriangleMesh& mesh, const BaseMesh& base) {
+  const TriangleMesh rounded = base.ToMesh();
+  ASSERT_EQ(rounded.positions.size(), mesh.positions.size());
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_LE(std::fabs(rounded.positions[v][c] - mesh.positions[v][c]), base.step * 0.50001f);
+      const double exact = static_cast<double>(base.step) * base.lattice[v][static_cast<size_t>(c)];
+      EXPECT_EQ(static_cast<double>(rounded.positions[v][c]), exact) << "floats hold lattice points exactly";
+    }
+  }
+}
+
 TEST(RoundToLattice, RoundsToTheNearestPointOfTheStep) {
   const TriangleMesh mesh = shapes::BumpySphere(2);
   for (const float step : {1e-4f, 0.0123f, 0.25f, 0.9f}) {
@@ -42,14 +54,7 @@ TEST(RoundToLattice, RoundsToTheNearestPointOfTheStep) {
     EXPECT_GT(base.step, step * (1 - 1.0f / 128));
     EXPECT_EQ(base.triangles, mesh.triangles);
     ASSERT_EQ(base.lattice.size(), mesh.positions.size());
-    const TriangleMesh rounded = base.ToMesh();
-    for (size_t v = 0; v < mesh.positions.size(); ++v) {
-      for (int c = 0; c < 3; ++c) {
-        EXPECT_LE(std::fabs(rounded.positions[v][c] - mesh.positions[v][c]), base.step * 0.50001f);
-        const double exact = static_cast<double>(base.step) * base.lattice[v][static_cast<size_t>(c)];
-        EXPECT_EQ(static_cast<double>(rounded.positions[v][c]), exact) << "floats hold lattice points exactly";
-      }
-    }
+    ExpectNearestPoints(mesh, base);
   }
 }
 
@@ -76,14 +81,7 @@ TEST(RoundToLattice, ShortensTheStepFarFromZero) {
     const BaseMesh base = RoundToLattice(mesh, kStep);
     EXPECT_LE(base.step, kStep);
     EXPECT_GT(base.step, 0.6f * kStep);
-    const TriangleMesh rounded = base.ToMesh();
-    for (size_t v = 0; v < mesh.positions.size(); ++v) {
-      for (int c = 0; c < 3; ++c) {
-        EXPECT_LE(std::fabs(rounded.positions[v][c] - mesh.positions[v][c]), base.step * 0.50001f);
-        const double exact = static_cast<double>(base.step) * base.lattice[v][static_cast<size_t>(c)];
-        EXPECT_EQ(static_cast<double>(rounded.positions[v][c]), exact) << "floats hold lattice points exactly";
-      }
-    }
+    ExpectNearestPoints(mesh, base);
   }
 }
 
