@@ -35,7 +35,7 @@ struct CodedBase {
 
 // Codes a base mesh without loss in the fewest bytes found among Draco's settings and starting triangles, or for kCompact among
 // starting triangles; deterministic. Of stock streams: the decoder's floats round to the lattice exactly; they equal BaseMesh::ToMesh() bit for bit where
-// step * lattice is exact in float, as with a step from ShortStep and |lattice| < 2^16. BaseMeshFromPositions(decoded
+// step * lattice is exact in float, as where both have 24 significant bits together (RoundToLattice). BaseMeshFromPositions(decoded
 // mesh, step) gives `mesh` again. Fails with kInvalidData on an empty base, a step that is not a positive normal float,
 // lattice values of 2^24 or more or spanning more than 24 bits, a base that is not an oriented manifold
 // (BuildTopology), and where Draco does not carry it unchanged.

@@ -16,6 +16,7 @@
 #include "draco/still_part.h"
 #include "draco/subdivided_input.h"
 #include "draco/zero_level_search.h"
+#include "geometry/bounding_box.h"
 #include "geometry/triangle_tree.h"
 #include "lacerta/clean.h"
 #include "lacerta/codec.h"
@@ -117,13 +118,11 @@ std::string ReasonForMiss(const MeasuredStream& coded, const ResolvedTarget& tar
 // What floats do to a mesh far from zero, where a stream that misses a PSNR may owe it to that; else empty.
 std::string ReasonInFloats(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target) {
   constexpr double kHeadroom = 6;  // dB: decoded positions are rounded, too, and so is all that leads to them
-  Vec3f extent;
-  for (const Vec3f& p : mesh.positions) {
-    for (int c = 0; c < 3; ++c) extent[c] = std::max(extent[c], std::fabs(p[c]));
-  }
+  const BoundingBox box = BoundsOf(mesh.positions);
   double squared = 0;  // of the error of rounding along an axis, in the mean
   for (int c = 0; c < 3; ++c) {
-    const double spacing = std::nextafter(extent[c], std::numeric_limits<float>::max()) - extent[c];
+    const float farthest = std::max(std::fabs(box.low[c]), std::fabs(box.high[c]));
+    const double spacing = std::nextafter(farthest, std::numeric_limits<float>::max()) - farthest;
     squared += spacing * spacing / (3 * 12);
   }
   const double psnr = Psnr(std::sqrt(squared), meter.diagonal());

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "lacerta/mesh.h"
 
@@ -18,6 +19,10 @@ bool IsFolded(const std::array<uint32_t, 4>& flap, const PositionOf& position_of
   const Vec3d normal = Cross(edge, position_of(flap[2]) - from), other = Cross(position_of(flap[3]) - from, edge);
   const double cosine = Dot(normal, other);  // times both lengths
   return cosine < 0 && cosine * cosine > kMostCosine * kMostCosine * SquaredNorm(normal) * SquaredNorm(other);
+}
+
+inline bool IsFolded(const std::array<uint32_t, 4>& flap, const std::vector<Vec3f>& positions) {
+  return IsFolded(flap, [&](uint32_t v) { return Vec3Cast<double>(positions[v]); });
 }
 
 }  // namespace lacerta

@@ -133,9 +133,8 @@ class LatticeDescent {
       const Vec3d corner = Moved(t[0]);
       turned += Dot(AreaVector(mesh_.positions, t), Cross(Moved(t[1]) - corner, Moved(t[2]) - corner)) < 0;
     }
-    const auto before = [&](uint32_t u) { return Vec3Cast<double>(mesh_.positions[u]); };
-    const auto after = [&](uint32_t u) { return Moved(u); };
-    for (const uint32_t i : neighbors_.vertex_flaps[v]) turned += IsFolded(neighbors_.flaps[i], after) && !IsFolded(neighbors_.flaps[i], before);
+    const auto moved = [&](uint32_t u) { return Moved(u); };
+    for (const uint32_t i : neighbors_.vertex_flaps[v]) turned += IsFolded(neighbors_.flaps[i], moved) && !IsFolded(neighbors_.flaps[i], mesh_.positions);
     return turned;
   }
 

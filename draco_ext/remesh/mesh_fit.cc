@@ -110,10 +110,7 @@ void UndoFlips(const std::vector<Vec3f>& before, const MeshNeighbors& neighbors,
       }
     }
     for (const auto& flap : neighbors.flaps) {
-      const auto is_folded = [&](const std::vector<Vec3f>& positions) {
-        return IsFolded(flap, [&](uint32_t v) { return Vec3Cast<double>(positions[v]); });
-      };
-      if (!is_folded(mesh->positions) || is_folded(before)) continue;
+      if (!IsFolded(flap, mesh->positions) || IsFolded(flap, before)) continue;
       for (const uint32_t v : flap) mesh->positions[v] = before[v];
       changed = true;
     }

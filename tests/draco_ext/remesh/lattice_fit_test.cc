@@ -73,9 +73,7 @@ TEST(LatticeFit, TurnsBackWhatRoundingTurnedOver) {
   const MeshNeighbors neighbors(mesh);
   const double step = 0.02;
   const auto num_folded = [&](const TriangleMesh& m) {
-    return std::count_if(neighbors.flaps.begin(), neighbors.flaps.end(), [&](const auto& flap) {
-      return IsFolded(flap, [&](uint32_t v) { return Vec3Cast<double>(m.positions[v]); });
-    });
+    return std::count_if(neighbors.flaps.begin(), neighbors.flaps.end(), [&](const auto& flap) { return IsFolded(flap, m.positions); });
   };
   TriangleMesh rounded = mesh;
   for (Vec3f& p : rounded.positions) {

@@ -101,10 +101,7 @@ TEST(MeshFitTest, FoldsNothing) {
     FitToSurface(FitTarget(mesh, 5000), neighbors, RateModel(), 8, &fitted);
     EXPECT_NE(fitted.positions, before.positions);
     for (const auto& flap : neighbors.flaps) {
-      const auto is_folded = [&](const TriangleMesh& m) {
-        return IsFolded(flap, [&](uint32_t v) { return Vec3Cast<double>(m.positions[v]); });
-      };
-      EXPECT_TRUE(is_folded(before) || !is_folded(fitted));
+      EXPECT_TRUE(IsFolded(flap, before.positions) || !IsFolded(flap, fitted.positions));
     }
   }
 }
