@@ -11,6 +11,7 @@
 #include "draco/crowded_input.h"
 #include "draco/custom_form.h"
 #include "draco/decoded_distance.h"
+#include "draco/input_proxy.h"
 #include "draco/rate_control.h"
 #include "draco/search_effort.h"
 #include "draco/still_part.h"
@@ -23,6 +24,7 @@
 #include "lacerta/decoder.h"
 #include "lacerta/surface_distance.h"
 #include "remesh/input_surface.h"
+#include "remesh/mend_tears.h"
 #include "remesh/simplify.h"
 #include "remesh/surface_parts.h"
 #include "remesh/unsubdivide.h"
@@ -183,12 +185,13 @@ struct SimplerSurface {
 // status. simpler: set where levels are to pay. Fills `report`.
 StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                     const EncodeOptions& options, std::optional<SimplerSurface>* simpler, bool* is_simpler, PartsReport* report) {
-  const SurfaceParts parts = SplitSurface(mesh);
+  const double psnr = TypicalPsnr(target, static_cast<double>(mesh.positions.size())), distance = DistanceOfPsnr(psnr, meter.diagonal());
+  const std::optional<MendedMesh> mended = MendTears(mesh, distance);
+  const SurfaceParts parts = SplitSurface(mended ? mended->mesh : mesh);
   if (parts.refined.triangles.empty()) return Unsupported("no component has triangles enough to be worth remeshing");
   if (options.progress) options.progress(0.02, "simplifying");
   const InputSurface surface(parts.refined, parts.topology);
   const SearchEffort effort = EffortOf(options.effort);
-  const double psnr = TypicalPsnr(target, static_cast<double>(mesh.positions.size()));
   std::vector<CollapseHistory> histories;
   tbb::parallel_invoke(
       [&] {
@@ -202,9 +205,10 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
       [&] {
         if (options.levels == LevelChoice::kWhereTheyPay) simpler->emplace(mesh, meter, target, effort);
       });
-  const StillPart still = PrepareStillPart(parts.still, parts.refined, DistanceOfPsnr(psnr, meter.diagonal()));
+  const StillPart still = PrepareStillPart(parts.still, parts.refined, distance);
   *report = {parts.refined_components,       parts.still_components, still.hidden_components,
-             parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices};
+             parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices,
+             mended ? mended->closed_tears : 0, mended ? mended->stray_components : 0};
   const auto is_outdone = [&](double bytes) {
     if (!*simpler) return false;
     const StatusOr<bool> takes_fewer = (*simpler)->search.TakesFewerThan(bytes);
@@ -232,12 +236,14 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, double crowding, 
   if (options.progress) options.progress(0.0, "looking at the surface");
   std::optional<ChosenStream> chosen = EncodeSubdivided(mesh, meter, target, options);
   report.subdivided_input = chosen.has_value();
+  std::optional<TriangleMesh> proxy;
   std::optional<SimplerSurface> simpler;
   bool is_simpler = false;
   // A base as small as remeshes have is the best there is; a larger one may take more bytes than another surface in all.
   if (!chosen || HasLargeBase(*chosen, target, mesh)) {
     PartsReport parts;
-    StatusOr<ChosenStream> remeshed = CodeRemeshed(mesh, meter, target, options, &simpler, &is_simpler, &parts);
+    proxy = InputProxy(mesh, meter, target);
+    StatusOr<ChosenStream> remeshed = CodeRemeshed(proxy ? *proxy : mesh, meter, target, options, &simpler, &is_simpler, &parts);
     if (!chosen && !is_simpler && !remeshed.ok()) return remeshed.status();
     const bool is_remeshed = remeshed.ok() && (!chosen || !IsWorthItsVertices(chosen->measured, remeshed.value().measured, target));
     if (is_remeshed) chosen = std::move(remeshed).value();
@@ -279,8 +285,10 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   StatusOr<EncodedParts> encoded = EncodeSurface(mesh, crowding, meter, target, options, report);
   if (!encoded.ok()) {  // without refinement, then, with the reason
     if (options.progress) options.progress(0.1, "simplifying");
-    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, crowding > kMostCrowding ? CodeCrowdedInput(mesh, crowding, meter, target)
-                                                                            : CodeZeroLevel(mesh, meter, target, EffortOf(options.effort)));
+    const bool is_crowded = crowding > kMostCrowding;
+    const std::optional<TriangleMesh> proxy = is_crowded ? std::nullopt : InputProxy(mesh, meter, target);
+    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, is_crowded ? CodeCrowdedInput(mesh, crowding, meter, target)
+                                                              : CodeZeroLevel(proxy ? *proxy : mesh, meter, target, EffortOf(options.effort)));
     const char* const miss = zero.meets_target ? "" : "; the target is out of reach, this is the nearest";
     encoded = FromZeroLevel(std::move(zero), report, encoded.status().message() + miss);
   }

@@ -33,6 +33,8 @@ Json ToJson(const EncodeReport& report) {
             {"hiddenComponents", report.parts.hidden_components},
             {"flippedTriangles", report.parts.flipped_triangles},
             {"cutEdges", report.parts.cut_edges},
+            {"mendedTears", report.parts.mended_tears},
+            {"strayComponents", report.parts.stray_components},
             {"splitVertices", report.parts.split_vertices}}},
           {"progressive", report.progressive},
           {"subdividedInput", report.subdivided_input},

@@ -86,6 +86,8 @@ struct PartsReport {
   uint64_t flipped_triangles = 0;   // turned over to agree with their neighbors
   uint64_t cut_edges = 0;           // edges of more than two faces, or where orientations could not agree
   uint64_t split_vertices = 0;      // by those cuts, and where parts touched in a point
+  uint64_t mended_tears = 0;        // borders that such cuts would have opened, closed instead
+  uint64_t stray_components = 0;    // handfuls of triangles at such places, left out
 };
 
 struct EncodeReport {

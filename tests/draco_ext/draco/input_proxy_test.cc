@@ -1,0 +1,60 @@
+#include "draco/input_proxy.h"
+
+#include <gtest/gtest.h>
+
+#include "shapes/shapes.h"
+
+namespace lacerta {
+namespace {
+
+ResolvedTarget AtPsnr(double psnr) {
+  ResolvedTarget target;
+  target.psnr = psnr;
+  return target;
+}
+
+class InputProxyTest : public ::testing::Test {
+ protected:
+  double DistanceOf(const TriangleMesh& mesh) const { return meter_.Measure(mesh, SurfaceDistanceOptions::RmsOnly()).value().Rms(); }
+
+  const TriangleMesh mesh_ = shapes::BumpySphere(6);  // 81,920 triangles
+  const SurfaceDistanceMeter meter_ = SurfaceDistanceMeter::Create(mesh_).value();
+};
+
+TEST_F(InputProxyTest, HasAsFewTrianglesAsItsShareOfTheErrorAllows) {
+  InputProxyOptions options;
+  options.fewest_triangles = 1000;
+  uint64_t before = 0;
+  for (const double psnr : {40.0, 60.0, 75.0}) {
+    const std::optional<TriangleMesh> proxy = InputProxy(mesh_, meter_, AtPsnr(psnr), options);
+    ASSERT_TRUE(proxy.has_value()) << psnr;
+    EXPECT_LE(DistanceOf(*proxy), 1.05 * options.share * DistanceOfPsnr(psnr, meter_.diagonal()));
+    EXPECT_GE(proxy->triangles.size(), std::max<uint64_t>(before, 990));
+    EXPECT_LE(proxy->triangles.size(), mesh_.triangles.size() / 2);
+    before = proxy->triangles.size();
+  }
+  EXPECT_GT(before, 2000u);
+}
+
+TEST_F(InputProxyTest, IsNotThereForSmallInputsAndFineTargets) {
+  EXPECT_FALSE(InputProxy(mesh_, meter_, AtPsnr(40)).has_value());
+  InputProxyOptions options;
+  options.fewest_triangles = 1000;
+  EXPECT_FALSE(InputProxy(mesh_, meter_, AtPsnr(120), options).has_value());
+}
+
+TEST_F(InputProxyTest, BytesAskForWhatTheyUsuallyBring) {
+  InputProxyOptions options;
+  options.fewest_triangles = 20'000;
+  ResolvedTarget target;
+  target.is_rate = true;
+  target.bytes = 300;
+  const std::optional<TriangleMesh> proxy = InputProxy(mesh_, meter_, target, options);
+  ASSERT_TRUE(proxy.has_value());
+  EXPECT_LT(proxy->triangles.size(), 21'000u);
+  target.bytes = 100'000;
+  EXPECT_FALSE(InputProxy(mesh_, meter_, target, options).has_value());
+}
+
+}  // namespace
+}  // namespace lacerta
