@@ -57,11 +57,14 @@ std::vector<Around> VerticesAround(const Topology& t, Span<const Vec3f> position
 }  // namespace
 
 std::vector<Vec3f> CurveOffsets(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {
+  return CurveOffsets(coarse, positions, midpoints, FrameNormals(coarse, positions, midpoints));
+}
+
+std::vector<Vec3f> CurveOffsets(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints, Span<const Vec3f> frame_normals) {
   // Of each opposite vertex, and of the mean of the wings: about what least-squares fits to details of scans give them beside the curve.
   constexpr float kOppositeShare = 3.0f / 128, kWingShare = -1.0f / 32;
   const std::vector<Vec3f> normals = VertexNormals(coarse, positions);
   const std::vector<Around> around = VerticesAround(coarse, positions);
-  const std::vector<Vec3f> frame_normals = FrameNormals(coarse, positions, midpoints);
   std::vector<Vec3f> offsets(coarse.num_edges());
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     if (!IsSmooth(coarse, e)) continue;

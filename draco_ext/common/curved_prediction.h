@@ -18,7 +18,9 @@ namespace lacerta {
 // an end on a curve of the mesh, and where the surface is degenerate.
 //   positions  #V of the coarse level or more
 //   midpoints  #E from PredictMidpoints
+//   frame_normals  #E from FrameNormals, where they are at hand
 std::vector<Vec3f> CurveOffsets(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints);
+std::vector<Vec3f> CurveOffsets(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints, Span<const Vec3f> frame_normals);
 
 // That of a level that is curved; zeros of another.
 inline std::vector<Vec3f> LevelOffsets(const Topology& coarse, bool is_curved, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {

@@ -12,18 +12,6 @@ Vec3f NormalOf(const Vec3f& area) {
   return normal == Vec3f{} ? Vec3f{0, 0, 1} : normal;
 }
 
-LocalFrame FrameAround(const Topology& coarse, Span<const Vec3f> positions, uint32_t edge, const Vec3f& normal) {
-  LocalFrame frame;
-  frame.normal = normal;
-  const Vec3f along = Normalized(positions[coarse.edges[edge][1]] - positions[coarse.edges[edge][0]]);
-  const Vec3f tangent = along - frame.normal * Dot(along, frame.normal);
-  frame.tangent1 = SquaredNorm(tangent) > 1e-6f ? Normalized(tangent) : AnyOrthogonal(frame.normal);
-  // Once more: the first pass leaves 1e-4 along the normal where the edge was nearly parallel to it.
-  frame.tangent1 = Normalized(frame.tangent1 - frame.normal * Dot(frame.tangent1, frame.normal));
-  frame.tangent2 = Cross(frame.normal, frame.tangent1);
-  return frame;
-}
-
 using FaceAreas = std::array<Vec3f, 4>;  // area vectors of the triangles at corners 0, 1, 2 and in the middle
 
 std::vector<FaceAreas> AreasOf(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {
@@ -41,6 +29,18 @@ Vec3f AnyOrthogonal(const Vec3f& n) {
   const float x = std::fabs(n.x), y = std::fabs(n.y), z = std::fabs(n.z);
   const Vec3f axis = x <= y && x <= z ? Vec3f{1, 0, 0} : y <= z ? Vec3f{0, 1, 0} : Vec3f{0, 0, 1};
   return Normalized(axis - n * Dot(axis, n));
+}
+
+LocalFrame FrameWithNormal(const Topology& coarse, Span<const Vec3f> positions, uint32_t edge, const Vec3f& normal) {
+  LocalFrame frame;
+  frame.normal = normal;
+  const Vec3f along = Normalized(positions[coarse.edges[edge][1]] - positions[coarse.edges[edge][0]]);
+  const Vec3f tangent = along - frame.normal * Dot(along, frame.normal);
+  frame.tangent1 = SquaredNorm(tangent) > 1e-6f ? Normalized(tangent) : AnyOrthogonal(frame.normal);
+  // Once more: the first pass leaves 1e-4 along the normal where the edge was nearly parallel to it.
+  frame.tangent1 = Normalized(frame.tangent1 - frame.normal * Dot(frame.tangent1, frame.normal));
+  frame.tangent2 = Cross(frame.normal, frame.tangent1);
+  return frame;
 }
 
 std::vector<Vec3f> FrameNormals(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {
@@ -67,7 +67,7 @@ LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Spa
     const int k = EdgeCorner(coarse, face, edge);
     area += split.InMiddle() + split.AtCorner((k + 1) % 3) + split.AtCorner((k + 2) % 3);
   }
-  return FrameAround(coarse, positions, edge, NormalOf(area));
+  return FrameWithNormal(coarse, positions, edge, NormalOf(area));
 }
 
 std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,
@@ -75,7 +75,7 @@ std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::ve
   const std::vector<Vec3f> normals = FrameNormals(coarse, positions, midpoints);
   std::vector<LocalFrame> frames;
   frames.reserve(coarse.num_edges());
-  for (uint32_t e = 0; e < coarse.num_edges(); ++e) frames.push_back(FrameAround(coarse, positions, e, normals[e]));
+  for (uint32_t e = 0; e < coarse.num_edges(); ++e) frames.push_back(FrameWithNormal(coarse, positions, e, normals[e]));
   return frames;
 }
 

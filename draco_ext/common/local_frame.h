@@ -47,6 +47,9 @@ LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions,
 // Normals of the frames of all edges: #E; the same bit by bit.
 std::vector<Vec3f> FrameNormals(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> predicted_midpoints);
 
+// The frame with that normal of the midpoint of one edge.
+LocalFrame FrameWithNormal(const Topology& coarse, Span<const Vec3f> positions, uint32_t edge, const Vec3f& normal);
+
 // Frames of all edges: #E.
 std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,
                                            const std::vector<Vec3f>& predicted_midpoints);

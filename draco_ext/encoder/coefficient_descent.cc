@@ -6,11 +6,10 @@
 
 #include "common/base_tags.h"
 #include "common/coefficient_coding.h"
-#include "common/curved_prediction.h"
 #include "common/length_classes.h"
-#include "common/local_frame.h"
 #include "decoder/synthesis.h"
 #include "encoder/bit_cost.h"
+#include "encoder/level_prediction.h"
 #include "encoder/local_model.h"
 #include "encoder/quantizer.h"
 
@@ -28,21 +27,15 @@ std::vector<Vec3f> LatticePoints(const BaseMesh& base) {
   return points;
 }
 
-// Moves the predicted vertices of level `level` (1 .. L), the last ones, to where its coefficients want them.
-void AddLevelDetails(const SurfaceTarget& target, const CodedSurface& coded, int level, std::vector<Vec3f>* positions) {
-  AddDetails(target.topologies[level - 1], coded.steps[level - 1], coded.levels[level - 1], positions);
-}
-
 // Appends the vertices of level `level` (1 .. L) to the positions of the coarser ones. predicted: of them, where it is at hand.
 void AppendLevel(const SurfaceTarget& target, const CodedSurface& coded, int level, std::vector<Vec3f>* positions) {
   const size_t num_coarse = positions->size();
   positions->resize(num_coarse + target.topologies[level - 1].num_edges());
   target.midpoints[level - 1].Predict(positions->data(), positions->data() + num_coarse);
-  AddLevelDetails(target, coded, level, positions);
+  AddDetails(target.topologies[level - 1], coded.steps[level - 1], coded.levels[level - 1], positions);
 }
-void AppendLevel(const SurfaceTarget& target, const CodedSurface& coded, int level, const std::vector<Vec3f>& predicted, std::vector<Vec3f>* positions) {
-  positions->insert(positions->end(), predicted.begin(), predicted.end());
-  AddLevelDetails(target, coded, level, positions);
+void AppendLevel(const SurfaceTarget& target, const CodedSurface& coded, int level, const LevelPrediction& predicted, std::vector<Vec3f>* positions) {
+  AppendLevel(target.topologies[level - 1], predicted, coded.steps[level - 1], coded.levels[level - 1], positions);
 }
 
 // The quantized value that lowers distortion + lambda * bits most: near the bottom of the parabola, or nearer to zero. The
@@ -91,13 +84,12 @@ void DescendBase(const SurfaceTarget& target, std::vector<Vec3f> gradient, BaseM
 }
 
 // Chooses the details of level `level` (1 .. L) and advances the state of the entropy coder over them.
-//   positions  of the coarser level; predicted: midpoints there
+//   positions  of the coarser level; predicted: from there
 //   gradient   for LocalModel
-void DescendLevel(const SurfaceTarget& target, int level, const std::vector<Vec3f>& positions, const std::vector<Vec3f>& predicted,
+void DescendLevel(const SurfaceTarget& target, int level, const std::vector<Vec3f>& positions, const LevelPrediction& predicted,
                   std::vector<Vec3f> gradient, const DescentOptions& options, CodedSurface* coded, CodingState* state) {
   const Topology& coarse = target.topologies[level - 1];
   const LevelSteps& steps = coded->steps[level - 1];
-  const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
   LocalModel model(target, level, std::move(gradient));
   BitMeter meter;
   const FinerLayer* const finer = options.finer;
@@ -105,7 +97,7 @@ void DescendLevel(const SurfaceTarget& target, int level, const std::vector<Vec3
   const auto choose = [&](CoefficientKind kind, uint32_t edge, SetModels& models, const CoefficientContext& context,
                           int32_t* value) {
     if (is_fixed) return;
-    const LocalFrame& frame = frames[edge];
+    const LocalFrame& frame = predicted.frames[edge];
     const Vec3f& direction = kind == CoefficientKind::kNormal       ? frame.normal
                              : kind == CoefficientKind::kTangential1 ? frame.tangent1
                                                                      : frame.tangent2;
@@ -143,7 +135,7 @@ void DescendOnce(const SurfaceTarget& target, const DescentOptions& options, Cod
   for (int level = 1; level <= last_active; ++level) {
     state.normal_continues = level < last_active && coded->steps[level].normal_step > 0;
     state.tangential_continues = level < last_active && coded->steps[level].tangential_step > 0;
-    const std::vector<Vec3f> predicted = target.midpoints[level - 1].Predict(*positions);
+    const LevelPrediction predicted = PredictLevel(target, level, coded->steps[level - 1], *positions);
     const int ahead = LevelAhead(target, level);
     std::vector<Vec3f> present = *positions;  // on the level ahead, with the coefficients so far
     AppendLevel(target, *coded, level, predicted, &present);
@@ -231,19 +223,18 @@ void DropIdleSets(const SurfaceTarget& target, double lambda, CodedSurface* code
 
 // The details of level `level` (1 .. L) against `predicted`, rounded.
 //   positions  of the coarser level, decoded
-QuantizedLevel QuantizeLevel(const SurfaceTarget& target, int level, const std::vector<Vec3f>& positions, const std::vector<Vec3f>& predicted,
+QuantizedLevel QuantizeLevel(const SurfaceTarget& target, int level, const std::vector<Vec3f>& positions, const LevelPrediction& predicted,
                              const LevelSteps& step) {
   const Topology& coarse = target.topologies[level - 1];
   QuantizedLevel quantized = ZeroLevel(coarse.num_edges());
   if (step.is_silent()) return quantized;
-  const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
-  const std::vector<Vec3f> offsets = LevelOffsets(coarse, step.is_curved, positions, predicted);
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     if (coarse.is_copy(e)) continue;
     const uint32_t v = coarse.num_vertices + e;
-    const Vec3f detail = target.points[v] - predicted[e] - offsets[e];
-    const Vec3f local = frames[e].ToLocal(detail);
-    const float on_plane = Dot(detail, target.normals[v]) / Dot(frames[e].normal, target.normals[v]);
+    const LocalFrame& frame = predicted.frames[e];
+    const Vec3f detail = target.points[v] - predicted.midpoints[e] - predicted.OffsetOf(e);
+    const Vec3f local = frame.ToLocal(detail);
+    const float on_plane = Dot(detail, target.normals[v]) / Dot(frame.normal, target.normals[v]);
     // Where the tangent plane stands too steep the normal line meets it far away, or never.
     constexpr float kMaxSlide = 0.1f;  // of the edge
     const float edge = Norm(positions[coarse.edges[e][1]] - positions[coarse.edges[e][0]]);
@@ -318,7 +309,7 @@ CodedSurface QuantizeClosedLoop(const SurfaceTarget& target, const BaseMesh& bas
   CodedSurface coded{base, steps, {}};
   std::vector<Vec3f> decoded = LatticePoints(base);
   for (int level = 1; level <= target.num_levels(); ++level) {
-    const std::vector<Vec3f> predicted = target.midpoints[level - 1].Predict(decoded);
+    const LevelPrediction predicted = PredictLevel(target, level, steps[level - 1], decoded);
     coded.levels.push_back(QuantizeLevel(target, level, decoded, predicted, steps[level - 1]));
     AppendLevel(target, coded, level, predicted, &decoded);
   }

@@ -1,5 +1,7 @@
 #include "encoder/local_model.h"
 
+#include "encoder/for_ranges.h"
+
 namespace lacerta {
 namespace {
 
@@ -8,13 +10,15 @@ std::vector<Vec3f> BringDown(const SurfaceTarget& target, const std::vector<Vec3
   const uint32_t num_vertices = target.topologies[level - 1].num_vertices;
   const StencilSpread& spread = target.spreads[level - 1];
   std::vector<Vec3f> coarser(num_vertices);
-  for (uint32_t v = 0; v < num_vertices; ++v) {
-    Vec3f sum = gradient[v];
-    for (uint32_t k = spread.first[v]; k < spread.first[v + 1]; ++k) {
-      sum += gradient[num_vertices + spread.edges[k]] * spread.weights[k];
+  ForRanges(num_vertices, [&](size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v) {
+      Vec3f sum = gradient[v];
+      for (uint32_t k = spread.first[v]; k < spread.first[v + 1]; ++k) {
+        sum += gradient[num_vertices + spread.edges[k]] * spread.weights[k];
+      }
+      coarser[v] = sum;
     }
-    coarser[v] = sum;
-  }
+  });
   return coarser;
 }
 
@@ -55,9 +59,9 @@ std::vector<std::vector<Vec3f>> Gradients(const SurfaceTarget& target, const std
   const int num_levels = target.num_levels();
   std::vector<std::vector<Vec3f>> gradients(num_levels + 1);
   gradients.back().resize(positions.size());
-  for (size_t v = 0; v < positions.size(); ++v) {
-    gradients.back()[v] = Weigh(target, v, positions[v] - target.points[v]) * target.masses.back()[v];
-  }
+  ForRanges(positions.size(), [&](size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v) gradients.back()[v] = Weigh(target, v, positions[v] - target.points[v]) * target.masses.back()[v];
+  });
   for (int level = num_levels; level > 0; --level) gradients[level - 1] = BringDown(target, gradients[level], level);
   return gradients;
 }

@@ -1,5 +1,7 @@
 #include "encoder/midpoint_stencils.h"
 
+#include "encoder/for_ranges.h"
+
 namespace lacerta {
 
 MidpointStencils::MidpointStencils(const Topology& topology, const StencilTable& table) : regular_(topology.num_edges()) {
@@ -22,11 +24,13 @@ MidpointStencils::MidpointStencils(const Topology& topology, const StencilTable&
 
 void MidpointStencils::Predict(const Vec3f* positions, Vec3f* midpoints) const {
   // The others stand in the first table as well, as stencils of vertex 0, so that this loop has no branch.
-  for (size_t e = 0; e < regular_.size(); ++e) {
-    Vec3f sum;
-    for (size_t k = 0; k < kSize; ++k) sum += positions[regular_[e][k]] * kWeights[k];
-    midpoints[e] = sum;
-  }
+  ForRanges(regular_.size(), [&](size_t begin, size_t end) {
+    for (size_t e = begin; e < end; ++e) {
+      Vec3f sum;
+      for (size_t k = 0; k < kSize; ++k) sum += positions[regular_[e][k]] * kWeights[k];
+      midpoints[e] = sum;
+    }
+  });
   for (const Other& other : others_) {
     Vec3f sum;
     for (size_t i = other.first; i < other.end; ++i) sum += positions[entries_[i].vertex] * entries_[i].weight;

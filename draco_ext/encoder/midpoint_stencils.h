@@ -15,6 +15,7 @@ namespace lacerta {
 // Predicts what PredictMidpoints (common/butterfly.h) does, to the last bit, without walking the topology.
 class MidpointStencils {
  public:
+  MidpointStencils() = default;  // of no edges
   MidpointStencils(const Topology& topology, const StencilTable& table);
 
   // From #V positions into #E midpoints, which may lie behind them in one array.

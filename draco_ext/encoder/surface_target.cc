@@ -1,5 +1,7 @@
 #include "encoder/surface_target.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -96,13 +98,17 @@ StencilSpread SpreadStencils(const Topology& topology, const StencilTable& table
 SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
   std::vector<Topology> topologies = {BuildTopology(mesh.mesh.num_base_vertices, mesh.mesh.base_triangles, mesh.mesh.tags).value()};
   StencilTable stencils(topologies[0]);
-  std::vector<MidpointStencils> midpoints;
-  std::vector<StencilSpread> spreads;
-  for (int level = 0; level < mesh.mesh.num_levels; ++level) {
-    midpoints.emplace_back(topologies.back(), stencils);
-    spreads.push_back(SpreadStencils(topologies.back(), stencils));
-    topologies.push_back(Refine(topologies.back()));
-  }
+  for (int level = 0; level < mesh.mesh.num_levels; ++level) topologies.push_back(Refine(topologies.back()));
+  std::vector<MidpointStencils> midpoints(mesh.mesh.num_levels);
+  std::vector<StencilSpread> spreads(mesh.mesh.num_levels);
+  tbb::parallel_for(0, 2 * mesh.mesh.num_levels, [&](int i) {
+    const int level = i / 2;
+    if (i % 2 == 0) {
+      midpoints[level] = MidpointStencils(topologies[level], stencils);
+    } else {
+      spreads[level] = SpreadStencils(topologies[level], stencils);
+    }
+  });
   std::vector<std::vector<float>> masses(topologies.size());
   std::vector<float> areas = AreaShares(topologies.back().triangles, mesh.mesh.positions);
   masses.back() = VertexAreas(mesh.mesh.positions.size(), topologies.back().triangles, areas);
@@ -113,7 +119,8 @@ SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
   topologies.back() = WithoutEdges(std::move(topologies.back()));
   SurfaceTarget target{std::move(topologies), std::move(stencils), std::move(midpoints), std::move(spreads), mesh.mesh.positions, mesh.surface_normals,
                        std::move(areas),      std::move(masses),    {},                   mesh.piercing,      std::move(next_twin), mesh.keeps_vertices};
-  for (int level = 0; level <= target.num_levels(); ++level) target.curvatures.push_back(Curvatures(target, level));
+  target.curvatures.resize(target.topologies.size());
+  tbb::parallel_for(0, target.num_levels() + 1, [&](int level) { target.curvatures[level] = Curvatures(target, level); });
   return target;
 }
 

@@ -3,6 +3,7 @@
 #define LACERTA_GEOMETRY_TRIANGLE_TREE_H_
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -42,6 +43,9 @@ class TriangleTree {
 
   // Squares of larger coordinates would leave the range of float.
   static constexpr float kMaxCoordinate = 1e18f;
+  static bool IsUsable(const Vec3f& p) {  // written so that NaN is refused
+    return std::fabs(p.x) <= kMaxCoordinate && std::fabs(p.y) <= kMaxCoordinate && std::fabs(p.z) <= kMaxCoordinate;
+  }
 
   explicit TriangleTree(const TriangleMesh& mesh);
 
@@ -78,6 +82,10 @@ class TriangleTree {
  private:
   static constexpr int kWidth = 4;  // children of a node
   static constexpr uint32_t kLeafSize = 4;
+  // From this depth on ranges are halved, which bounds the depth: the stack of a query never overflows.
+  static constexpr int kMaxHeuristicDepth = 24;
+  // Halving 2^32 faces twice per level ends after 16 more; each level leaves at most three children waiting.
+  static constexpr int kStackSize = 3 * (kMaxHeuristicDepth + 17);
 
   // Boxes of the children as structure of arrays and by center and half size, so that the compiler tests four at once; relative to
   // the origin of the tree.
