@@ -71,19 +71,20 @@ class Ladder {
     const int first = std::clamp(RungOfSize(TypicalBase(TypicalPsnr(target_, num_input_))), first_, last_);
     const Status outdone = Unsupported("a stream without levels is much smaller");
     if (is_outdone(LeastBytesFrom(std::max(first - 1, first_)))) return outdone;
-    Visit(effort_.enough_sizes == 1 ? std::vector<int>{first} : std::vector<int>{first - 1, first, first + 1});
+    Visit(effort_.enough_sizes == 1 ? std::vector<int>{first} : std::vector<int>{first - 1, first, first + 1}, {});
     for (;;) {
       if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(rungs_.size())), "choosing the base mesh");
       const std::vector<int> ranking = Ranking();
       for (size_t i = effort_.at_a_time; i < ranking.size(); ++i) LetGo(&rungs_[ranking[i]]);
       const int best = ranking.front(), highest = rungs_.rbegin()->first;
       const bool is_scored = std::isfinite(rungs_[best].score);
-      std::vector<int> next;
+      std::vector<int> next, likely;  // likely: due after them, but where they are much worse
       if (is_scored) {
         for (const int r : {best - 1, best + 1}) {
           const int beyond = 2 * r - best;
           if (IsMissing(r)) {
             next.push_back(r);
+            likely.push_back(beyond);
           } else if (IsMissing(beyond) && rungs_.count(r) > 0 && !IsMuchWorse(rungs_[r], rungs_[best])) {
             next.push_back(beyond);
           }
@@ -99,10 +100,11 @@ class Ladder {
         for (const int r : ranking) {
           if (rungs_[r].status.ok()) result.push_back(r);
         }
+        made_.clear();
         if (result.empty()) return rungs_[best].status.WithContext("no base mesh can be coded");
         return result;
       }
-      Visit(next);
+      Visit(next, next.size() == 1 ? likely : std::vector<int>());
     }
   }
 
@@ -152,17 +154,29 @@ class Ladder {
     return start;
   }
 
-  // Makes and scores the given rungs; those off the ladder are left out. A base that fails costs only itself.
-  void Visit(const std::vector<int>& numbers) {
-    std::vector<std::pair<int, Rung>> made;
+  // Makes and scores the given rungs; those off the ladder are left out. A base that fails costs only itself. likely: to be visited later,
+  // made now where there are threads for it. What is found does not depend on it.
+  void Visit(const std::vector<int>& numbers, const std::vector<int>& likely) {
+    struct Visited {
+      int number;
+      bool is_scored;
+      Rung rung;
+    };
+    std::vector<Visited> visited;
     for (const int r : numbers) {
-      if (r >= first_ && r <= last_) made.emplace_back(r, Rung());
+      if (r < first_ || r > last_) continue;
+      const auto made = made_.extract(r);
+      visited.push_back({r, true, made.empty() ? Rung() : std::move(made.mapped())});
     }
-    ForEachCandidate(num_input_, made.size(), [&](size_t i) {
-      Rung& rung = made[i].second;
-      rung.status = MakeAndScore(made[i].first, &rung);
+    for (const int r : likely) {
+      if (IsMissing(r) && made_.count(r) == 0 && AreInParallel(num_input_)) visited.push_back({r, false, Rung()});
+    }
+    ForEachCandidate(num_input_, visited.size(), [&](size_t i) {
+      Rung& rung = visited[i].rung;
+      if (!rung.candidate && rung.status.ok()) rung.status = Remesh(visited[i].number, &rung);
+      if (visited[i].is_scored && rung.status.ok()) rung.status = Score(visited[i].number, &rung);
     });
-    for (auto& [r, rung] : made) rungs_[r] = std::move(rung);
+    for (Visited& v : visited) (v.is_scored ? rungs_ : made_)[v.number] = std::move(v.rung);
   }
 
   double PsnrOf(const NormalMesh& remesh) const {
@@ -194,8 +208,7 @@ class Ladder {
     return Status();
   }
 
-  Status MakeAndScore(int number, Rung* rung) const {
-    LACERTA_RETURN_IF_ERROR(Remesh(number, rung));
+  Status Score(int number, Rung* rung) const {
     constexpr double kHeadroom = 0.5;  // dB that quantization takes at least
     if (const std::optional<SearchStart> start = StartOf(number)) rung->search->BeginAt(*start);
     if (!target_.is_rate && rung->remesh_psnr < target_.psnr + kHeadroom) return Status();
@@ -227,7 +240,7 @@ class Ladder {
   const SearchEffort effort_;
   double num_input_;
   int first_, last_;  // rungs: of the coarsest base that the history has, and of the largest worth trying
-  std::map<int, Rung> rungs_;
+  std::map<int, Rung> rungs_, made_;  // made_: not yet scored
 };
 
 }  // namespace
