@@ -179,10 +179,18 @@ class Ladder {
     for (Visited& v : visited) (v.is_scored ? rungs_ : made_)[v.number] = std::move(v.rung);
   }
 
-  double PsnrOf(const NormalMesh& remesh) const {
-    constexpr uint64_t kRoughSamples = 30'000;
+  static constexpr uint64_t kRoughSamples = 30'000;
+  double PsnrOf(const NormalMesh& remesh, uint64_t num_samples = kRoughSamples) const {
     const TriangleMesh finest = MeshAtLevel(remesh.mesh, remesh.mesh.num_levels).value();
-    return Psnr(DecodedDistance(meter_, finest, SurfaceDistanceOptions::RmsOnly(kRoughSamples)), meter_.diagonal());
+    return Psnr(DecodedDistance(meter_, finest, SurfaceDistanceOptions::RmsOnly(num_samples)), meter_.diagonal());
+  }
+
+  // Whether a remesh has no more than that PSNR, which few samples mostly tell.
+  bool IsBelow(double psnr, const NormalMesh& remesh) const {
+    constexpr uint64_t kFewSamples = 5'000;
+    constexpr double kClear = 1.5;  // dB
+    const double about = PsnrOf(remesh, kFewSamples);
+    return std::fabs(about - psnr) > kClear ? about < psnr : PsnrOf(remesh) <= psnr;
   }
 
   // Makes the candidate of a rung.
@@ -195,8 +203,7 @@ class Ladder {
     for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
       LACERTA_ASSIGN_OR_RETURN(pierced, PierceUnreversed(surface_, RungSize(number), levels, target_.base_coding, std::move(pierced)));
       const bool may_grow = 4 * static_cast<double>(pierced->refined().mesh.positions.size()) <= MostVertices(num_input_);
-      const double psnr = may_grow ? PsnrOf(pierced->Remesh()) : comfortable;
-      if (psnr <= comfortable - kMostGain) continue;  // fitted or not
+      if (may_grow && IsBelow(comfortable - kMostGain, pierced->Remesh())) continue;  // fitted or not
       fitted = pierced->Fitted();
       rung->remesh_psnr = PsnrOf(*fitted);
       if (!may_grow || rung->remesh_psnr > comfortable) break;

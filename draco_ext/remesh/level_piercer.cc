@@ -166,16 +166,21 @@ FaceSites LevelPiercer::SitesOf(uint32_t face, const std::vector<Site>& midpoint
     s.site[k] = &sites_[coarse_.triangles[face][k]];
     s.site[3 + k] = &midpoints[coarse_.face_edges[face][k]];
   }
+  return s;
+}
+
+ChartedFaceSites LevelPiercer::ChartedSitesOf(uint32_t face, const std::vector<Site>& midpoints) const {
+  ChartedFaceSites s{SitesOf(face, midpoints), {}, 0};
   for (int k = 0; k < 6; ++k) s.q[k] = *domain_.ToChart(BaseFace(face), s.site[k]->parameter);
   s.area = ChartArea(s.q[0], s.q[1], s.q[2]);
   return s;
 }
 
-bool LevelPiercer::FoldsInChart(const FaceSites& s, const int (&child)[3]) const {
+bool LevelPiercer::FoldsInChart(const ChartedFaceSites& s, const int (&child)[3]) const {
   return ChartArea(s.q[child[0]], s.q[child[1]], s.q[child[2]]) < options_.min_child_area * s.area;
 }
 
-bool LevelPiercer::Folds(const FaceSites& s, const int (&child)[3]) const {
+bool LevelPiercer::Folds(const ChartedFaceSites& s, const int (&child)[3]) const {
   return FoldsInChart(s, child) || FacingArea(s, child) <= 0;
 }
 
@@ -183,7 +188,7 @@ bool LevelPiercer::FoldsAround(uint32_t edge, const std::vector<Site>& midpoints
   for (const uint32_t face : coarse_.edge_faces[edge]) {
     if (face == kNone) continue;
     const int midpoint = 3 + EdgeCorner(coarse_, face, edge);
-    const FaceSites sites = SitesOf(face, midpoints);
+    const ChartedFaceSites sites = ChartedSitesOf(face, midpoints);
     for (const auto& child : kChildren) {
       if (std::find(child, child + 3, midpoint) != child + 3 && Folds(sites, child)) return true;
     }
@@ -198,7 +203,7 @@ std::vector<uint8_t> LevelPiercer::FoldedMidpoints(const std::vector<Site>& midp
   tbb::parallel_for(uint32_t{0}, coarse_.num_faces(), [&](uint32_t f) {
     const auto& sides = coarse_.face_edges[f];
     if (!moved[sides[0]] && !moved[sides[1]] && !moved[sides[2]]) return;
-    const FaceSites s = SitesOf(f, midpoints);
+    const ChartedFaceSites s = ChartedSitesOf(f, midpoints);
     for (const auto& child : kChildren) {
       if (!Folds(s, child)) continue;
       int worst = -1;

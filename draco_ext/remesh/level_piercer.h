@@ -38,7 +38,11 @@ inline double ChartArea(const ChartPoint& a, const ChartPoint& b, const ChartPoi
 // A coarse face with the midpoints of its sides: corners, then midpoints, as kChildren numbers them.
 struct FaceSites {
   const Site* site[6];
-  ChartPoint q[6];  // in the chart of the base face
+};
+
+// The same in the chart of the base face.
+struct ChartedFaceSites : FaceSites {
+  ChartPoint q[6];
   double area;      // of the face in the chart
 };
 
@@ -86,14 +90,15 @@ class LevelPiercer {
   Site SiteOn(const LineHit& hit, uint32_t edge, const DomainPoint& parameter) const;
   bool IsSound(uint32_t edge, const Expectation& expected, Site* site) const;
   FaceSites SitesOf(uint32_t face, const std::vector<Site>& midpoints) const;
-  bool FoldsInChart(const FaceSites& sites, const int (&child)[3]) const;
-  bool Folds(const FaceSites& sites, const int (&child)[3]) const;
+  ChartedFaceSites ChartedSitesOf(uint32_t face, const std::vector<Site>& midpoints) const;
+  bool FoldsInChart(const ChartedFaceSites& sites, const int (&child)[3]) const;
+  bool Folds(const ChartedFaceSites& sites, const int (&child)[3]) const;
   bool FoldsAround(uint32_t edge, const std::vector<Site>& midpoints) const;
   std::vector<uint8_t> FoldedMidpoints(const std::vector<Site>& midpoints, const std::vector<uint8_t>& moved) const;
   Vec3f NeighborMean(uint32_t edge, const std::vector<Site>& midpoints) const;
   void Relax(std::vector<Site>* midpoints) const;
   double TurnedOverAround(uint32_t edge, const std::vector<Site>& midpoints) const;
-  std::vector<uint32_t> TurnedOverMidpoints(const std::vector<Site>& midpoints) const;
+  std::vector<uint32_t> TurnedOverMidpoints(const std::vector<Site>& midpoints, const std::vector<uint8_t>& moved) const;
   std::vector<Site> PlacesNear(uint32_t edge, const Site& site, double step) const;
   void TurnBack(std::vector<Site>* midpoints) const;
 

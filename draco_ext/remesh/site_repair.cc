@@ -1,4 +1,6 @@
 // Midpoints that piercing left in bad places: loose ones are relaxed, reversed triangles turned back.
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -33,12 +35,15 @@ void LevelPiercer::Relax(std::vector<Site>* midpoints) const {
     const PiercingKind kind = (*midpoints)[e].kind;
     if (kind == PiercingKind::kClosest || kind == PiercingKind::kParametric) loose.push_back(e);
   }
+  std::vector<Site> pierced(loose.size());  // whatever the neighbors do
+  tbb::parallel_for(size_t{0}, loose.size(), [&](size_t i) { pierced[i] = FindSite(loose[i], PiercingKind::kNormal); });
   for (int round = 0; round < options_.relaxation_rounds; ++round) {
-    for (const uint32_t e : loose) {
+    for (size_t i = 0; i < loose.size(); ++i) {
+      const uint32_t e = loose[i];
       Site& site = (*midpoints)[e];
       if (site.kind == PiercingKind::kNormal) continue;
       const Site before = site;
-      site = FindSite(e, PiercingKind::kNormal);
+      site = pierced[i];
       if (site.kind == PiercingKind::kNormal && !FoldsAround(e, *midpoints)) continue;
       site = ClosestSite(e, NeighborMean(e, *midpoints));
       if (site.kind != PiercingKind::kClosest || FoldsAround(e, *midpoints)) site = before;
@@ -52,7 +57,7 @@ double LevelPiercer::TurnedOverAround(uint32_t edge, const std::vector<Site>& mi
   for (const uint32_t face : coarse_.edge_faces[edge]) {
     if (face == kNone) continue;
     const int midpoint = 3 + EdgeCorner(coarse_, face, edge);
-    const FaceSites sites = SitesOf(face, midpoints);
+    const ChartedFaceSites sites = ChartedSitesOf(face, midpoints);
     for (const auto& child : kChildren) {
       if (std::find(child, child + 3, midpoint) == child + 3) continue;
       if (FoldsInChart(sites, child)) return std::numeric_limits<double>::infinity();
@@ -62,15 +67,22 @@ double LevelPiercer::TurnedOverAround(uint32_t edge, const std::vector<Site>& mi
   return area;
 }
 
-std::vector<uint32_t> LevelPiercer::TurnedOverMidpoints(const std::vector<Site>& midpoints) const {
-  std::vector<uint32_t> turned;
-  for (uint32_t f = 0; f < coarse_.num_faces(); ++f) {
+// Those of fine triangles that are turned over, in faces with a side whose midpoint has moved.
+std::vector<uint32_t> LevelPiercer::TurnedOverMidpoints(const std::vector<Site>& midpoints, const std::vector<uint8_t>& moved) const {
+  std::vector<uint8_t> turned_corners(coarse_.num_faces(), 0);  // bit k: the midpoint opposite to corner k
+  tbb::parallel_for(uint32_t{0}, coarse_.num_faces(), [&](uint32_t f) {
+    const auto& sides = coarse_.face_edges[f];
+    if (!moved[sides[0]] && !moved[sides[1]] && !moved[sides[2]]) return;
     const FaceSites sites = SitesOf(f, midpoints);
     for (const auto& child : kChildren) {
       if (FacingArea(sites, child) >= 0) continue;
-      for (const int corner : child) {
-        if (corner >= 3) turned.push_back(coarse_.face_edges[f][corner - 3]);
-      }
+      for (const int corner : child) turned_corners[f] |= static_cast<uint8_t>((1 << corner) >> 3);
+    }
+  });
+  std::vector<uint32_t> turned;
+  for (uint32_t f = 0; f < coarse_.num_faces(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if ((turned_corners[f] >> k & 1) != 0) turned.push_back(coarse_.face_edges[f][k]);
     }
   }
   std::sort(turned.begin(), turned.end());
@@ -106,14 +118,20 @@ std::vector<Site> LevelPiercer::PlacesNear(uint32_t edge, const Site& site, doub
 // move about, one after the other, as long as that turns some area back.
 void LevelPiercer::TurnBack(std::vector<Site>* midpoints) const {
   double step = 0.2;
+  std::vector<uint8_t> moved(coarse_.num_edges(), 1);
   for (int round = 0; round < options_.turning_rounds; ++round, step *= 0.75) {
-    const std::vector<uint32_t> turned = TurnedOverMidpoints(*midpoints);
+    const std::vector<uint32_t> turned = TurnedOverMidpoints(*midpoints, moved);
     if (turned.empty()) return;
-    for (const uint32_t e : turned) {
+    std::vector<std::vector<Site>> places(turned.size());  // whatever the neighbors do
+    tbb::parallel_for(size_t{0}, turned.size(), [&](size_t i) { places[i] = PlacesNear(turned[i], (*midpoints)[turned[i]], step); });
+    moved.assign(coarse_.num_edges(), 0);
+    for (size_t i = 0; i < turned.size(); ++i) {
+      const uint32_t e = turned[i];
+      moved[e] = 1;
       Site& site = (*midpoints)[e];
       Site best = site;
       double least = TurnedOverAround(e, *midpoints);
-      for (const Site& place : PlacesNear(e, best, step)) {
+      for (const Site& place : places[i]) {
         site = place;
         const double area = TurnedOverAround(e, *midpoints);
         if (area < least) {
