@@ -65,6 +65,18 @@ std::vector<Triangle> RefineTriangles(const Topology& c) {
   return triangles;
 }
 
+Topology RefineWithoutEdges(const Topology& c) {
+  Topology t;
+  t.num_vertices = c.num_vertices + c.num_edges();
+  t.triangles = RefineTriangles(c);
+  t.role = c.role;
+  t.role.resize(t.num_vertices, CurveRole::kSmooth);
+  for (uint32_t e = 0; e < c.num_edges(); ++e) {
+    if (c.on_curve[e]) t.role[c.num_vertices + e] = CurveRole::kCurve;
+  }
+  return t;
+}
+
 LevelCounts SubdividedCounts(LevelCounts counts, int levels) {
   constexpr uint64_t kMaxFaces = uint64_t{1} << 58;
   for (int level = 0; level < levels && counts.faces > 0 && counts.faces < kMaxFaces; ++level) {

@@ -61,6 +61,8 @@ Status SetTags(const BaseTags& tags, Topology* topology);
 Topology Refine(const Topology& coarse);
 // The triangles of that level alone: 4 #F.
 std::vector<Triangle> RefineTriangles(const Topology& coarse);
+// The vertices with their roles and the triangles of that level: of a finest level, whose edges, the largest tables of all, nobody asks for.
+Topology RefineWithoutEdges(const Topology& coarse);
 
 // Numbers of vertices, edges and faces after `levels` >= 0 refinements, in 64 bits. Growth stops once there are 2^58 faces
 // or more, so that no number of levels in a damaged header overflows into a small count. base: each below 2^33.

@@ -65,15 +65,6 @@ std::vector<uint32_t> ChainTwins(const std::vector<uint32_t>& joined, const std:
   return next;
 }
 
-// The finest level is not refined: its tables of edges, the largest of all, can go.
-Topology WithoutEdges(Topology finest) {
-  Topology t;
-  t.num_vertices = finest.num_vertices;
-  t.triangles = std::move(finest.triangles);
-  t.role = std::move(finest.role);
-  return t;
-}
-
 }  // namespace
 
 StencilSpread SpreadStencils(const Topology& topology, const StencilTable& table) {
@@ -98,7 +89,8 @@ StencilSpread SpreadStencils(const Topology& topology, const StencilTable& table
 SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
   std::vector<Topology> topologies = {BuildTopology(mesh.mesh.num_base_vertices, mesh.mesh.base_triangles, mesh.mesh.tags).value()};
   StencilTable stencils(topologies[0]);
-  for (int level = 0; level < mesh.mesh.num_levels; ++level) topologies.push_back(Refine(topologies.back()));
+  for (int level = 1; level < mesh.mesh.num_levels; ++level) topologies.push_back(Refine(topologies.back()));
+  if (mesh.mesh.num_levels > 0) topologies.push_back(RefineWithoutEdges(topologies.back()));
   std::vector<MidpointStencils> midpoints(mesh.mesh.num_levels);
   std::vector<StencilSpread> spreads(mesh.mesh.num_levels);
   tbb::parallel_for(0, 2 * mesh.mesh.num_levels, [&](int i) {
@@ -116,7 +108,6 @@ SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
     masses[level - 1] = LumpMasses(topologies[level - 1], masses[level]);
   }
   std::vector<uint32_t> next_twin = ChainTwins(mesh.mesh.tags.joined, topologies);
-  topologies.back() = WithoutEdges(std::move(topologies.back()));
   SurfaceTarget target{std::move(topologies), std::move(stencils), std::move(midpoints), std::move(spreads), mesh.mesh.positions, mesh.surface_normals,
                        std::move(areas),      std::move(masses),    {},                   mesh.piercing,      std::move(next_twin), mesh.keeps_vertices};
   target.curvatures.resize(target.topologies.size());

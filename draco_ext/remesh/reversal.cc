@@ -14,12 +14,12 @@ namespace {
 // Triangles that agree more with the input's normals at their corners are not looked up, unless one is on a crease.
 constexpr float kSafeCosine = 0.9f;
 
-// #V, 1 on creases, where the input has several normals.
-std::vector<uint8_t> CreaseVertices(const Topology& topology) {
-  std::vector<uint8_t> on_crease(topology.num_vertices, 0);
-  for (uint32_t e = 0; e < topology.num_edges(); ++e) {
-    if (!topology.on_curve[e] || topology.is_border(e)) continue;
-    for (const uint32_t v : topology.edges[e]) on_crease[v] = 1;
+// Of a level and the next finer one, #V + #E: 1 on creases, where the input has several normals.
+std::vector<uint8_t> CreaseVertices(const Topology& coarse) {
+  std::vector<uint8_t> on_crease(size_t{coarse.num_vertices} + coarse.num_edges(), 0);
+  for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
+    if (!coarse.on_curve[e] || coarse.is_border(e)) continue;
+    for (const uint32_t v : {coarse.edges[e][0], coarse.edges[e][1], coarse.num_vertices + e}) on_crease[v] = 1;
   }
   return on_crease;
 }
@@ -43,9 +43,9 @@ bool IsReversed(const InputSurface& surface, const std::array<Vec3f, 3>& corners
 ReversedPart FindReversed(const InputSurface& surface, const NormalMesh& remesh) {
   const SemiRegularMesh& mesh = remesh.mesh;
   Topology topology = BuildTopology(mesh.num_base_vertices, mesh.base_triangles, mesh.tags).value();
-  for (int level = 0; level < mesh.num_levels; ++level) topology = Refine(topology);
-  const std::vector<Triangle>& triangles = topology.triangles;
+  for (int level = 1; level < mesh.num_levels; ++level) topology = Refine(topology);
   const std::vector<uint8_t> on_crease = CreaseVertices(topology);
+  const std::vector<Triangle> triangles = mesh.num_levels > 0 ? RefineTriangles(topology) : std::move(topology.triangles);
   std::vector<uint8_t> is_reversed(triangles.size());
   std::vector<double> area(triangles.size());
   tbb::parallel_for(size_t{0}, triangles.size(), [&](size_t f) {

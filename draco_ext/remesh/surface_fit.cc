@@ -207,8 +207,8 @@ void MoveUnlessTurned(const InputSurface& surface, const std::vector<double>& mo
 // Those of the finest level.
 std::vector<Triangle> FinestTriangles(const SemiRegularMesh& mesh) {
   Topology topology = BuildTopology(mesh.num_base_vertices, mesh.base_triangles, mesh.tags).value();
-  for (int level = 0; level < mesh.num_levels; ++level) topology = Refine(topology);
-  return std::move(topology.triangles);
+  for (int level = 1; level < mesh.num_levels; ++level) topology = Refine(topology);
+  return mesh.num_levels > 0 ? RefineTriangles(topology) : std::move(topology.triangles);
 }
 
 }  // namespace
