@@ -15,6 +15,7 @@
 #include "draco/for_each_candidate.h"
 #include "draco/pierced_base.h"
 #include "lacerta/decoder.h"
+#include "remesh/surface_fit.h"
 
 namespace lacerta {
 namespace {
@@ -40,6 +41,8 @@ double MostVertices(double num_input_vertices) {
 
 // A base size that was tried.
 struct Rung {
+  std::optional<CodedBase> base;      // until there is the candidate
+  std::optional<NormalMesh> remesh;   // over that
   std::unique_ptr<NormalMeshCandidate> candidate;  // null once it was let go of
   std::unique_ptr<CandidateSearch> search;
   Status status;  // why there is no candidate, if so
@@ -113,6 +116,7 @@ class Ladder {
     Rung& rung = rungs_.at(number);
     if (!rung.candidate) {
       LACERTA_RETURN_IF_ERROR(Remesh(number, &rung));
+      MakeCandidate(&rung);
       if (std::isfinite(rung.score)) rung.search->BeginAt(rung.start);
     }
     LACERTA_ASSIGN_OR_RETURN(MeasuredStream measured, rung.search->Meet());
@@ -173,7 +177,7 @@ class Ladder {
     }
     ForEachCandidate(num_input_, visited.size(), [&](size_t i) {
       Rung& rung = visited[i].rung;
-      if (!rung.candidate && rung.status.ok()) rung.status = Remesh(visited[i].number, &rung);
+      if (!rung.remesh && rung.status.ok()) rung.status = Remesh(visited[i].number, &rung);
       if (visited[i].is_scored && rung.status.ok()) rung.status = Score(visited[i].number, &rung);
     });
     for (Visited& v : visited) (v.is_scored ? rungs_ : made_)[v.number] = std::move(v.rung);
@@ -193,29 +197,34 @@ class Ladder {
     return std::fabs(about - psnr) > kClear ? about < psnr : PsnrOf(remesh) <= psnr;
   }
 
-  // Makes the candidate of a rung.
+  // Makes the remesh of a rung.
   Status Remesh(int number, Rung* rung) const {
     constexpr double kComfort = 12;  // dB: a remesh nearer to the goal than that costs bytes and gets one level more
     constexpr double kMostGain = 6;  // dB that the fit brings
     const double comfortable = TypicalPsnr(target_, num_input_) + kComfort;
     std::unique_ptr<PiercedBase> pierced;
-    std::optional<NormalMesh> fitted;
     for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
       LACERTA_ASSIGN_OR_RETURN(pierced, PierceUnreversed(surface_, RungSize(number), levels, target_.base_coding, std::move(pierced)));
       const bool may_grow = 4 * static_cast<double>(pierced->refined().mesh.positions.size()) <= MostVertices(num_input_);
       if (may_grow && IsBelow(comfortable - kMostGain, pierced->Remesh())) continue;  // fitted or not
-      fitted = pierced->Fitted();
-      rung->remesh_psnr = PsnrOf(*fitted);
-      if (!may_grow || rung->remesh_psnr > comfortable) break;
+      rung->base.emplace(pierced->base());
+      rung->remesh = pierced->Remesh();
+      if (!may_grow) pierced.reset();  // as large as what comes now
+      FitToInput(surface_.surface, SurfaceFitOptions(), &*rung->remesh);
+      rung->remesh_psnr = PsnrOf(*rung->remesh);
+      if (!may_grow || rung->remesh_psnr > comfortable) return Status();
     }
-    CodedBase base = pierced->base();
-    pierced.reset();  // as large as what comes now
-    rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(base), *std::move(fitted));
+  }
+
+  void MakeCandidate(Rung* rung) const {
+    rung->candidate = std::make_unique<NormalMeshCandidate>(*std::move(rung->base), *std::move(rung->remesh));
+    rung->base.reset();
+    rung->remesh.reset();
     rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_, effort_);
-    return Status();
   }
 
   Status Score(int number, Rung* rung) const {
+    MakeCandidate(rung);
     constexpr double kHeadroom = 0.5;  // dB that quantization takes at least
     if (const std::optional<SearchStart> start = StartOf(number)) rung->search->BeginAt(*start);
     if (!target_.is_rate && rung->remesh_psnr < target_.psnr + kHeadroom) return Status();
