@@ -1,6 +1,7 @@
 #include "encoder/level_prediction.h"
 
 #include "common/curved_prediction.h"
+#include "encoder/for_ranges.h"
 
 namespace lacerta {
 
@@ -13,13 +14,15 @@ LevelPrediction PredictLevel(const SurfaceTarget& target, int level, const Level
   if (steps.is_curved) result.offsets = CurveOffsets(coarse, positions, result.midpoints, normals);
   if (steps.is_silent()) return result;
   result.frames.resize(coarse.num_edges());
-  for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-    if (steps.tangential_step > 0) {
-      result.frames[e] = FrameWithNormal(coarse, positions, e, normals[e]);
-    } else {
-      result.frames[e].normal = normals[e];
+  ForRanges(coarse.num_edges(), [&](size_t begin, size_t end) {
+    for (size_t e = begin; e < end; ++e) {
+      if (steps.tangential_step > 0) {
+        result.frames[e] = FrameWithNormal(coarse, positions, static_cast<uint32_t>(e), normals[e]);
+      } else {
+        result.frames[e].normal = normals[e];
+      }
     }
-  }
+  });
   return result;
 }
 

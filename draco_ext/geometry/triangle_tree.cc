@@ -1,5 +1,6 @@
 #include "geometry/triangle_tree.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -122,16 +123,17 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   const uint32_t group_size = in_groups ? kGroupSize : 1;
   nodes_.reserve(in_groups ? 2 * references.size() : references.size() / 2 + 1);
   BuildNode({mesh, references.data(), in_groups}, references.data(), references.data() + references.size(), 0, &nodes_);
-  corners_.reserve(references.size() * group_size);
-  faces_.reserve(references.size() * group_size);
-  for (const Reference& reference : references) {
-    for (uint32_t f = reference.face; f < reference.face + group_size; ++f) {
+  corners_.resize(references.size() * group_size);
+  faces_.resize(corners_.size());
+  tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(faces_.size()), kParallelSize), [&](const tbb::blocked_range<uint32_t>& range) {
+    for (uint32_t slot = range.begin(); slot != range.end(); ++slot) {
+      const uint32_t f = references[slot / group_size].face + slot % group_size;
       const Triangle& t = mesh.triangles[f];
-      slots_[f] = static_cast<uint32_t>(faces_.size());
-      faces_.push_back(f);
-      corners_.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+      slots_[f] = slot;
+      faces_[slot] = f;
+      corners_[slot] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
     }
-  }
+  });
 }
 
 namespace {

@@ -49,12 +49,12 @@ class Decimator {
 
  private:
   Fan FanOf(uint32_t v) const;
-  Candidate BestCandidate(uint32_t v, const Fan& fan) const;  // of a vertex of at most kMaxRing faces
+  Candidate BestCandidate(uint32_t v, const Fan& fan, const std::vector<Vec2d>& chart) const;  // of a vertex of at most kMaxRing faces
   double LeastCost(uint32_t v, uint32_t kept) const;
   double Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& chart, const std::vector<Vec3d>& old_normals, int kept) const;
   bool KeepsTopology(const Fan& fan, int kept) const;
   bool CanLoseAFace(uint32_t v) const;
-  void Collapse(uint32_t v, const Fan& fan, int kept);
+  void Collapse(uint32_t v, const Fan& fan, const std::vector<Vec2d>& chart, int kept);
   void Push(uint32_t v);
 
   const DecimateOptions options_;
@@ -272,15 +272,14 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
   return LeastCost(v, u) * std::pow(worst_aspect, options_.aspect_power) * valence_penalty * coverage * coverage * turning_penalty;
 }
 
-Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
+Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan, const std::vector<Vec2d>& chart) const {
+  Candidate best;
+  if (!IsStarShaped(chart, fan.faces.size())) return best;
   const int k = fan.size();
   std::vector<Vec3d> old_normals(fan.faces.size());
   for (size_t i = 0; i < old_normals.size(); ++i) {
     old_normals[i] = Normalized(Cross(positions_[fan.ring[i]] - positions_[v], positions_[fan.ring[(i + 1) % k]] - positions_[v]));
   }
-  const std::vector<Vec2d> chart = FlattenFan(positions_[v], fan, positions_);
-  Candidate best;
-  if (!IsStarShaped(chart, fan.faces.size())) return best;
   std::array<Candidate, kMaxRing> least;  // by LeastCost, the lowest first, until none can be the best any more
   int count = 0;
   for (int j = 0; j < k; ++j) {
@@ -299,14 +298,18 @@ Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan) const {
 
 void Decimator::Push(uint32_t v) {
   const bool is_removable = history_.role(v) != CurveRole::kCorner && !vertex_faces_[v].empty() && vertex_faces_[v].size() < kMaxRing;
-  const Candidate candidate = is_removable ? BestCandidate(v, FanOf(v)) : Candidate();
+  Candidate candidate;
+  if (is_removable) {
+    const Fan fan = FanOf(v);
+    candidate = BestCandidate(v, fan, FlattenFan(positions_[v], fan, positions_));
+  }
   blocked_[v] = candidate.kept < 0;
   if (!blocked_[v]) heap_.push({candidate.cost, v});
 }
 
-void Decimator::Collapse(uint32_t v, const Fan& fan, int kept) {
+void Decimator::Collapse(uint32_t v, const Fan& fan, const std::vector<Vec2d>& chart, int kept) {
   const uint32_t u = fan.ring[kept];
-  const uint32_t first_new = history_.Append(v, fan.ring, FlattenFan(positions_[v], fan, positions_), fan.faces, kept);
+  const uint32_t first_new = history_.Append(v, fan.ring, chart, fan.faces, kept);
   quadrics_[u] += quadrics_[v];
   // The area that an old face stood for goes to the new faces that take its place in the chart, a third at each of three points.
   covered_area_.resize(history_.num_faces(), 0.0);
@@ -337,13 +340,14 @@ CollapseHistory Decimator::Run() {
     heap_.pop();
     const uint32_t v = entry.vertex;
     const Fan fan = FanOf(v);
-    const Candidate candidate = BestCandidate(v, fan);
+    const std::vector<Vec2d> chart = FlattenFan(positions_[v], fan, positions_);
+    const Candidate candidate = BestCandidate(v, fan, chart);
     if (candidate.kept < 0) {
       blocked_[v] = 1;
     } else if (candidate.cost > entry.cost) {
       heap_.push({candidate.cost, v});
     } else {
-      Collapse(v, fan, candidate.kept);
+      Collapse(v, fan, chart, candidate.kept);
       --remaining;
       for (const uint32_t w : fan.ring) {
         if (blocked_[w]) Push(w);
