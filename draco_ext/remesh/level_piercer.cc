@@ -225,7 +225,15 @@ std::vector<uint8_t> LevelPiercer::FoldedMidpoints(const std::vector<Site>& midp
 
 std::vector<Site> LevelPiercer::Run(const StencilTable& stencils, const std::vector<Vec3f>& positions) {
   predicted_ = PredictMidpoints(coarse_, stencils, positions);
-  frames_ = ComputeLocalFrames(coarse_, positions, predicted_);
+  const std::vector<Vec3f> normals = FrameNormals(coarse_, positions, predicted_);
+  frames_.resize(coarse_.num_edges());
+  for (uint32_t e = 0; e < coarse_.num_edges(); ++e) {
+    if (coarse_.on_curve[e]) {
+      frames_[e] = FrameWithNormal(coarse_, positions, e, normals[e]);
+    } else {
+      frames_[e].normal = normals[e];
+    }
+  }
   std::vector<Site> midpoints(coarse_.num_edges());
   constexpr uint32_t kRange = 64;  // edges
   tbb::parallel_for(uint32_t{0}, (coarse_.num_edges() + kRange - 1) / kRange,

@@ -109,7 +109,7 @@ class LevelPiercer {
   const Topology& coarse_;
   const std::vector<Site>& sites_;   // of the coarse vertices
   std::vector<Vec3f> predicted_;
-  std::vector<LocalFrame> frames_;
+  std::vector<LocalFrame> frames_;  // with tangents on curves alone
 };
 
 }  // namespace lacerta

@@ -20,7 +20,7 @@ namespace {
 // What a point of the input says of the vertices of the nearest triangle of the remesh: `gap` is to be undone by moves d_k of its
 // corners along their normals, sum slopes[k] * d_k = gap.
 struct Sample {
-  uint32_t face = 0;
+  Triangle corners{};
   std::array<float, 3> slopes{};
   float gap = 0;
 };
@@ -70,7 +70,7 @@ Sample SampleAt(const InputSurface& surface, uint32_t face, const Vec3d& weights
   const Vec3d normal = Normalized(Cross(p[1] - p[0], p[2] - p[0]));
   if (Dot(normal, Vec3Cast<double>(surface.NormalAt(face, weights))) < kLeastCosine) return {};
   Sample sample;
-  sample.face = nearest.face;
+  sample.corners = corners;
   sample.gap = static_cast<float>(Dot(Vec3Cast<double>(position - nearest.position), normal));
   for (int k = 0; k < 3; ++k) {
     sample.slopes[k] = nearest.barycentric[k] * static_cast<float>(Dot(normal, Vec3Cast<double>(normals[corners[k]])));
@@ -105,17 +105,15 @@ std::vector<Sample> TakeSamples(const InputSurface& surface, double count, const
 // The normal equations of the samples, (sum s s' + stiffness) d = sum gap s.
 class NormalEquations {
  public:
-  NormalEquations(const std::vector<Triangle>& triangles, const std::vector<Sample>& samples, double stiffness)
-      : triangles_(triangles), samples_(samples), stiffness_(stiffness) {}
+  NormalEquations(const std::vector<Sample>& samples, double stiffness) : samples_(samples), stiffness_(stiffness) {}
 
   std::vector<double> Apply(const std::vector<double>& d) const {
     std::vector<double> result(d.size());
     for (size_t v = 0; v < d.size(); ++v) result[v] = stiffness_ * d[v];
     for (const Sample& s : samples_) {
-      const Triangle& corners = triangles_[s.face];
       double along = 0;
-      for (int k = 0; k < 3; ++k) along += double{s.slopes[k]} * d[corners[k]];
-      for (int k = 0; k < 3; ++k) result[corners[k]] += double{s.slopes[k]} * along;
+      for (int k = 0; k < 3; ++k) along += double{s.slopes[k]} * d[s.corners[k]];
+      for (int k = 0; k < 3; ++k) result[s.corners[k]] += double{s.slopes[k]} * along;
     }
     return result;
   }
@@ -123,13 +121,12 @@ class NormalEquations {
   std::vector<double> RightSide(size_t num_vertices) const {
     std::vector<double> result(num_vertices, 0.0);
     for (const Sample& s : samples_) {
-      for (int k = 0; k < 3; ++k) result[triangles_[s.face][k]] += double{s.slopes[k]} * double{s.gap};
+      for (int k = 0; k < 3; ++k) result[s.corners[k]] += double{s.slopes[k]} * double{s.gap};
     }
     return result;
   }
 
  private:
-  const std::vector<Triangle>& triangles_;
   const std::vector<Sample>& samples_;
   const double stiffness_;
 };
@@ -219,8 +216,7 @@ void FitToInput(const InputSurface& surface, const SurfaceFitOptions& options, N
   const double num_samples = std::min(options.samples_per_vertex * static_cast<double>(finest.positions.size()),
                                       options.samples_per_input_vertex * static_cast<double>(surface.mesh().positions.size()));
   const std::vector<Sample> samples = TakeSamples(surface, num_samples, finest, remesh->surface_normals);
-  std::vector<double> moves =
-      Solve(NormalEquations(finest.triangles, samples, options.stiffness), mesh.positions.size(), options.iterations);
+  std::vector<double> moves = Solve(NormalEquations(samples, options.stiffness), mesh.positions.size(), options.iterations);
   const std::vector<uint8_t> pinned = CopiedVertices(mesh.tags);
   for (size_t v = 0; v < pinned.size(); ++v) {
     if (pinned[v]) moves[v] = 0;
