@@ -31,27 +31,26 @@ struct ShearedLine {
   }
 };
 
-// A line as the boxes of a node are tested against it: in float, for all four at once, and never short of a box that it meets. Lengths count
-// along the axis where the direction is longest.
-struct BoxLine {
-  // origin: relative to that of the tree.
-  BoxLine(const Vec3d& origin_d, const Vec3d& direction, double t_min_d, double t_max_d) : origin(Vec3Cast<float>(origin_d)) {
-    constexpr double kLargest = 1e19;  // as good as 1 / 0, since boxes are padded; times any coordinate in the range of float
-    const double longest = std::max({std::fabs(direction.x), std::fabs(direction.y), std::fabs(direction.z)});
+// The part of a line that boxes are tested against: by separating axes, in float and for the four boxes of a node at once, and never short of
+// one that it meets.
+struct Segment {
+  // origin: relative to that of the tree; largest: no coordinate of the mesh is larger there.
+  Segment(const Vec3d& origin, const Vec3d& direction, double t_min, double t_max, double largest) {
+    // Beyond the mesh there is nothing to meet.
+    const double farthest = (2 * Norm(origin) + 4 * largest) / Norm(direction);
+    const double from = std::clamp(t_min, -farthest, farthest), to = std::clamp(t_max, -farthest, farthest);
+    middle = Vec3Cast<float>(origin + direction * (0.5 * (from + to)));
+    half = Vec3Cast<float>(direction * (0.5 * (to - from)));
     for (int axis = 0; axis < 3; ++axis) {
-      const double inverse = std::clamp(longest / direction[axis], -kLargest, kLargest);
-      along[axis] = static_cast<float>(inverse);
-      across[axis] = static_cast<float>(std::fabs(inverse)) * (1 + kSlack);
-      slack[axis] = std::fabs(origin[axis]) * kSlack;
+      reach[axis] = std::fabs(half[axis]);
+      slack[axis] = (std::fabs(middle[axis]) + reach[axis]) * kSlack;
     }
-    const auto bound = [&](double t) { return static_cast<float>(std::clamp<double>(t * longest, -FLT_MAX, FLT_MAX)); };
-    t_min = bound(t_min_d - std::fabs(t_min_d) * kSlack);
-    t_max = bound(t_max_d + std::fabs(t_max_d) * kSlack);
   }
 
-  static constexpr float kSlack = 1e-6f;  // some ulps: for the rounding of the origin, of differences and of quotients
-  Vec3f origin, along, across, slack;
-  float t_min, t_max;
+  static constexpr float kSlack = 1e-6f;  // some ulps
+  Vec3f middle, half;
+  Vec3f reach;  // the absolute values of `half`
+  Vec3f slack;  // for the rounding of both
 };
 
 }  // namespace
@@ -61,28 +60,31 @@ void TriangleTree::IntersectLine(const Vec3f& origin, const Vec3f& direction, fl
   if (nodes_.empty() || !IsUsable(origin) || !IsUsable(direction) || direction == Vec3f{} || !(t_min <= t_max)) return;
   const Vec3d origin_d = Vec3Cast<double>(origin), direction_d = Vec3Cast<double>(direction);
   const ShearedLine line(origin_d, direction_d);
-  const BoxLine box_line(origin_d - Vec3Cast<double>(origin_), direction_d, t_min, t_max);
+  const Segment segment(origin_d - Vec3Cast<double>(origin_), direction_d, t_min, t_max, std::ldexp(1.0, 11) / scale_);
+  const Vec3f &middle = segment.middle, &half = segment.half, &reach = segment.reach, &slack = segment.slack;
   uint32_t stack[kStackSize];
   int size = 0;
   stack[size++] = 0;
   while (size > 0) {
     const Node& node = nodes_[stack[--size]];
-    float enter[kWidth], leave[kWidth];
+    float apart[kWidth];  // above 0 where some axis separates box and segment
     for (int k = 0; k < kWidth; ++k) {
-      enter[k] = box_line.t_min;
-      leave[k] = box_line.t_max;
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      const float from = box_line.origin[axis], along = box_line.along[axis], across = box_line.across[axis], slack = box_line.slack[axis];
-      for (int k = 0; k < kWidth; ++k) {
-        const float away = node.center[axis][k] - from;
-        const float middle = away * along, half = (node.half_size[axis][k] + slack + std::fabs(away) * BoxLine::kSlack) * across;
-        enter[k] = middle - half > enter[k] ? middle - half : enter[k];
-        leave[k] = middle + half < leave[k] ? middle + half : leave[k];
-      }
+      const float x = node.center[0][k] - middle.x, y = node.center[1][k] - middle.y, z = node.center[2][k] - middle.z;
+      const float size_x = node.half_size[0][k] + slack.x + std::fabs(x) * Segment::kSlack;
+      const float size_y = node.half_size[1][k] + slack.y + std::fabs(y) * Segment::kSlack;
+      const float size_z = node.half_size[2][k] + slack.z + std::fabs(z) * Segment::kSlack;
+      const float beyond_x = std::fabs(x) - size_x - reach.x;
+      const float beyond_y = std::fabs(y) - size_y - reach.y;
+      const float beyond_z = std::fabs(z) - size_z - reach.z;
+      const float across_x = std::fabs(y * half.z - z * half.y) - (size_y * reach.z + size_z * reach.y);
+      const float across_y = std::fabs(z * half.x - x * half.z) - (size_z * reach.x + size_x * reach.z);
+      const float across_z = std::fabs(x * half.y - y * half.x) - (size_x * reach.y + size_y * reach.x);
+      // v + |v| is above 0 where v is, without a branch.
+      apart[k] = (beyond_x + std::fabs(beyond_x)) + (beyond_y + std::fabs(beyond_y)) + (beyond_z + std::fabs(beyond_z)) +
+                 (across_x + std::fabs(across_x)) + (across_y + std::fabs(across_y)) + (across_z + std::fabs(across_z));
     }
     for (int k = 0; k < kWidth; ++k) {
-      if (enter[k] > leave[k] || node.half_size[0][k] < 0.0f) continue;
+      if (apart[k] > 0.0f || node.half_size[0][k] < 0.0f) continue;
       if (node.count[k] == 0) {
         stack[size++] = node.child[k];
         continue;
