@@ -11,11 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "draco/decoded_distance.h"
+#include "draco/fitted_remesh.h"
 #include "draco/for_each_candidate.h"
-#include "draco/pierced_base.h"
-#include "lacerta/decoder.h"
-#include "remesh/surface_fit.h"
 
 namespace lacerta {
 namespace {
@@ -23,26 +20,9 @@ namespace {
 // Base sizes tried: a ladder, walked from where streams of that quality have their base on typical surfaces.
 constexpr double kFirstRung = 48;
 
-// Levels that bring a base to at least as many vertices as the input has; chords of the remesh then cost little.
-int LevelsFor(double num_base_vertices, double num_input_vertices) {
-  constexpr double kVertexShare = 0.7;
-  constexpr int kMostLevels = 10;
-  int levels = 0;
-  for (double v = num_base_vertices; v < kVertexShare * num_input_vertices && levels < kMostLevels; v *= 4) ++levels;
-  return levels;
-}
-
-// That levels may bring a remesh to: six times the input's, and more where that is quickly decoded. Coarse inputs need it most: their
-// triangles are as large as what a stream of 70 dB may be wrong by.
-double MostVertices(double num_input_vertices) {
-  constexpr double kShare = 6, kLargestShare = 24, kQuicklyDecoded = 200'000;
-  return std::max(kShare * num_input_vertices, std::min(kLargestShare * num_input_vertices, kQuicklyDecoded));
-}
-
 // A base size that was tried.
 struct Rung {
-  std::optional<CodedBase> base;      // until there is the candidate
-  std::optional<NormalMesh> remesh;   // over that
+  std::optional<FittedRemesh> remesh;              // until there is the candidate
   std::unique_ptr<NormalMeshCandidate> candidate;  // null once it was let go of
   std::unique_ptr<CandidateSearch> search;
   Status status;  // why there is no candidate, if so
@@ -183,42 +163,14 @@ class Ladder {
     for (Visited& v : visited) (v.is_scored ? rungs_ : made_)[v.number] = std::move(v.rung);
   }
 
-  static constexpr uint64_t kRoughSamples = 30'000;
-  double PsnrOf(const NormalMesh& remesh, uint64_t num_samples = kRoughSamples) const {
-    const TriangleMesh finest = MeshAtLevel(remesh.mesh, remesh.mesh.num_levels).value();
-    return Psnr(DecodedDistance(meter_, finest, SurfaceDistanceOptions::RmsOnly(num_samples)), meter_.diagonal());
-  }
-
-  // Whether a remesh has no more than that PSNR, which few samples mostly tell.
-  bool IsBelow(double psnr, const NormalMesh& remesh) const {
-    constexpr uint64_t kFewSamples = 5'000;
-    constexpr double kClear = 1.5;  // dB
-    const double about = PsnrOf(remesh, kFewSamples);
-    return std::fabs(about - psnr) > kClear ? about < psnr : PsnrOf(remesh) <= psnr;
-  }
-
-  // Makes the remesh of a rung.
   Status Remesh(int number, Rung* rung) const {
-    constexpr double kComfort = 12;  // dB: a remesh nearer to the goal than that costs bytes and gets one level more
-    constexpr double kMostGain = 6;  // dB that the fit brings
-    const double comfortable = TypicalPsnr(target_, num_input_) + kComfort;
-    std::unique_ptr<PiercedBase> pierced;
-    for (int levels = LevelsFor(RungSize(number), num_input_);; ++levels) {
-      LACERTA_ASSIGN_OR_RETURN(pierced, PierceUnreversed(surface_, RungSize(number), levels, target_.base_coding, std::move(pierced)));
-      const bool may_grow = 4 * static_cast<double>(pierced->refined().mesh.positions.size()) <= MostVertices(num_input_);
-      if (may_grow && IsBelow(comfortable - kMostGain, pierced->Remesh())) continue;  // fitted or not
-      rung->base.emplace(pierced->base());
-      rung->remesh = pierced->Remesh();
-      if (!may_grow) pierced.reset();  // as large as what comes now
-      FitToInput(surface_.surface, SurfaceFitOptions(), &*rung->remesh);
-      rung->remesh_psnr = PsnrOf(*rung->remesh);
-      if (!may_grow || rung->remesh_psnr > comfortable) return Status();
-    }
+    LACERTA_ASSIGN_OR_RETURN(rung->remesh, RemeshForPsnr(surface_, RungSize(number), TypicalPsnr(target_, num_input_), target_.base_coding, meter_));
+    return Status();
   }
 
   void MakeCandidate(Rung* rung) const {
-    rung->candidate = std::make_unique<NormalMeshCandidate>(*std::move(rung->base), *std::move(rung->remesh));
-    rung->base.reset();
+    rung->remesh_psnr = rung->remesh->psnr;
+    rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(rung->remesh->base), std::move(rung->remesh->mesh));
     rung->remesh.reset();
     rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_, effort_);
   }

@@ -2,8 +2,8 @@
 #include <cfloat>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
+#include "geometry/closest_on_triangle.h"
 #include "geometry/triangle_tree.h"
 
 namespace lacerta {
@@ -11,55 +11,6 @@ namespace {
 
 // Boxes are compared in float, triangles in double: relative slack for the rounding of a squared box distance.
 constexpr float kBoxSlack = 1.0f + 2e-6f;
-
-// The point of a triangle closest to some p, as weights of the corners b and c.
-struct TrianglePoint {
-  double b = 0.0, c = 0.0;
-  double squared_distance = 0.0;
-};
-
-// Closest to p on the segment from `start` to start + d, all relative to p: parameter in [0, 1] and squared distance.
-std::pair<double, double> ClosestOnSegment(const Vec3d& start, const Vec3d& d) {
-  const double length2 = SquaredNorm(d);
-  const double along = -Dot(start, d);
-  const double t = along <= 0.0 || length2 <= 0.0 ? 0.0 : along >= length2 ? 1.0 : along / length2;
-  return {t, SquaredNorm(start + d * t)};
-}
-
-// False where the triangle is certainly not closer than sqrt(bound2). Differences of float coordinates are exact in
-// double and so are, all but the last bit, the products in `normal`: thin triangles and small distances to large
-// triangles stay accurate. A projection outside the triangle is closest to one of the edges that it is outside of.
-bool ClosestOnTriangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c, double bound2,
-                       TrianglePoint* out) {
-  const Vec3d pa = a - p, pb = b - p, pc = c - p;
-  const Vec3d ab = b - a, ac = c - a, bc = c - b;
-  const Vec3d normal = Cross(ab, ac);
-  const double area2 = SquaredNorm(normal);
-  const double height = Dot(pa, normal);
-  if (height * height > bound2 * area2) return false;
-  const double side_ab = Dot(Cross(pa, pb), normal);
-  const double side_bc = Dot(Cross(pb, pc), normal);
-  const double side_ca = Dot(Cross(pc, pa), normal);
-  const bool degenerate = !(area2 > 0.0);
-  if (!degenerate && side_ab >= 0.0 && side_bc >= 0.0 && side_ca >= 0.0) {
-    *out = {side_ca / area2, side_ab / area2, height * height / area2};
-    return true;
-  }
-  out->squared_distance = std::numeric_limits<double>::infinity();
-  if (degenerate || side_ab < 0.0) {
-    const auto [t, d2] = ClosestOnSegment(pa, ab);
-    if (d2 < out->squared_distance) *out = {t, 0.0, d2};
-  }
-  if (degenerate || side_bc < 0.0) {
-    const auto [t, d2] = ClosestOnSegment(pb, bc);
-    if (d2 < out->squared_distance) *out = {1.0 - t, t, d2};
-  }
-  if (degenerate || side_ca < 0.0) {
-    const auto [t, d2] = ClosestOnSegment(pa, ac);
-    if (d2 < out->squared_distance) *out = {0.0, t, d2};
-  }
-  return true;
-}
 
 struct StackEntry {
   float squared_distance;
@@ -75,7 +26,7 @@ struct TriangleTree::Search {
   double bound2;     // squared distance to beat
   float box_bound2;  // the same for boxes, with slack
   uint32_t slot = SurfacePoint::kNone;
-  TrianglePoint best;
+  ClosestWeights best;
 
   void SetBound(double squared_distance) {
     bound2 = squared_distance;
@@ -168,7 +119,7 @@ void TriangleTree::TestLeaf(uint32_t first, uint32_t count, Search* search) cons
 
 void TriangleTree::TestSlot(uint32_t slot, Search* search) const {
   const Corners& t = corners_[slot];
-  TrianglePoint point;
+  ClosestWeights point;
   if (!ClosestOnTriangle(search->pd, Vec3Cast<double>(t[0]), Vec3Cast<double>(t[1]), Vec3Cast<double>(t[2]),
                          search->bound2, &point)) {
     return;
