@@ -70,7 +70,7 @@ async function prepare() {
   if (listAssets().length > 0) return;
   mkdirSync(assets, {recursive: true});
   const {dataFolder, lacerta, scratch, writeTorus} = await import(pathToFileURL(join(web, 'test/node/support.mjs')).href);
-  const {writeDracoTwin} = await import(pathToFileURL(join(web, 'test/node/draco_twin.mjs')).href);
+  const {readMesh, writeDracoTwin} = await import(pathToFileURL(join(web, 'test/node/draco_twin.mjs')).href);
   const torus = join(scratch, 'torus.obj');
   writeTorus(torus, 240, 120);
   const meshes = [torus, ...['horse', 'bunny_zipper', 'venus'].map(name => join(dataFolder, `${name}.ply`)).filter(existsSync)];
@@ -78,7 +78,7 @@ async function prepare() {
     const out = join(assets, `${basename(mesh).replace(/\.\w+$/, '')}.glb`);
     console.log(`packing ${out}`);
     lacerta('pack', mesh, '-o', out, '--psnr', '75', '--levels', 'always', '--effort', 'fast');
-    await writeDracoTwin(mesh, out);
+    await writeDracoTwin(readMesh(mesh), out);
   }
 }
 

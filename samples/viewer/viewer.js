@@ -85,8 +85,9 @@ export async function show(url, {mode = byId('mode').value, name = url} = {}) {
   const {signal} = download;
   byId('problem').textContent = '';
   byId('progress').value = 0;
-  started = performance.now();
+  const begun = started = performance.now();
   window.history_of_levels = [];
+  window.textures_shown = undefined;
   try {
     const gltf = await loader.load(slow(url), {mode, signal, timeout: 5000});
     if (signal.aborted) return;
@@ -106,6 +107,7 @@ export async function show(url, {mode = byId('mode').value, name = url} = {}) {
       window.history_of_levels.push({level: detail.level, error: detail.error, triangles: detail.triangles, milliseconds: performance.now() - started});
       readOut(model, name);
     });
+    model.addEventListener('textures', () => { window.textures_shown = performance.now() - begun; });
     model.addEventListener('progress', ({detail}) => {
       byId('progress').value = detail.received / detail.total;
       readOut(model, name);

@@ -75,6 +75,7 @@ export interface PoolOptions {
 export class DecoderPool {
   constructor(module: WebAssembly.Module, options?: PoolOptions);
   readonly streams: number;
+  warm(): void;
   create(options?: DecoderOptions): RemoteDecoder;
   dispose(): void;
 }

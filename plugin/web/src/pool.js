@@ -93,9 +93,14 @@ export class DecoderPool {
 
   get streams() { return this.#threads.reduce((sum, thread) => sum + thread.streams, 0); }
 
+  /** Starts the worker of the next stream, where it is to have one of its own. */
+  warm() {
+    if (this.#threads.length < this.#size && this.#threads.every(thread => thread.streams > 0)) this.#threads.push(new Thread(this.#makeWorker(), this.#module));
+  }
+
   /** options: as for Decoder. */
   create(options = {}) {
-    if (this.#threads.length < this.#size) this.#threads.push(new Thread(this.#makeWorker(), this.#module));
+    this.warm();
     const thread = this.#threads.reduce((best, other) => other.streams < best.streams ? other : best);
     ++thread.streams;
     const stream = this.#count++;

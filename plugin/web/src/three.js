@@ -149,6 +149,7 @@ export class LacertaLoader {
    * first. Rejects where there is not even a base. gltf.userData.lacerta is undefined for assets without our extension.
    */
   load(url, {mode = 'stream', signal, ...transferOptions} = {}) {
+    Promise.resolve(poolOf(this.#options)).then(pool => pool.warm()).catch(() => {});  // while the first bytes come; failures are told when it is needed
     return mode === 'range' ? this.#loadRanges(url, {signal, ...transferOptions}) : this.#loadStream(url, {signal, ...transferOptions});
   }
 

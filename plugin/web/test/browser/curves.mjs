@@ -1,12 +1,13 @@
-// The error on the screen against time, as a picture: SVG that the browser turns into PNG, so that no plotting program is needed.
+// The error on the screen against time, of rows {file: 'lacerta' or 'draco', psnr, milliseconds}, as a picture: SVG that the browser turns into PNG, so that
+// no plotting program is needed.
 import {writeFileSync} from 'node:fs';
 
 export async function drawCurves(page, rows, path) {
   const width = 640, height = 400, left = 60, bottom = 50, top = 30, right = 20;
   const end = 1.05 * Math.max(...rows.map(row => row.milliseconds)), low = Math.min(...rows.map(row => row.psnr)) - 5, high = Math.max(...rows.map(row => row.psnr)) + 3;
   const x = time => left + (width - left - right) * time / end, y = psnr => height - bottom - (height - bottom - top) * (psnr - low) / (high - low);
-  const steps = what => {
-    const points = rows.filter(row => row.what === what);
+  const steps = file => {
+    const points = rows.filter(row => row.file === file);
     return points.map((row, i) => `${i === 0 ? `M${x(row.milliseconds)},${height - bottom}` : ''}V${y(row.psnr)}H${x(points[i + 1]?.milliseconds ?? end)}`).join('');
   };
   const ticks = (from, to, count) => Array.from({length: count + 1}, (unused, i) => from + (to - from) * i / count);

@@ -1,13 +1,13 @@
 // Chromium, and a server of the viewer with assets packed for the tests.
 import {randomBytes} from 'node:crypto';
 import {existsSync, mkdirSync} from 'node:fs';
-import {join} from 'node:path';
+import {basename, join} from 'node:path';
 import {deflateSync} from 'node:zlib';
-import {NodeIO} from '@gltf-transform/core';
+import {Document, NodeIO} from '@gltf-transform/core';
 import {ALL_EXTENSIONS} from '@gltf-transform/extensions';
 import {chromium} from 'playwright-core';
 import {serve, viewerRoots} from '../../../../samples/viewer/serve.mjs';
-import {writeDracoTwin} from '../node/draco_twin.mjs';
+import {boundsOf, readMesh, writeDracoTwin} from '../node/draco_twin.mjs';
 import {dataFolder, example, lacerta, pack, root, scratch, writeTorus} from '../node/support.mjs';
 
 export const pictures = join(root, 'out/browser');
@@ -16,13 +16,40 @@ mkdirSync(pictures, {recursive: true});
 const flags = ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
   '--disable-background-networking', '--disable-component-update', '--disable-sync', '--js-flags=--expose-gc'];
 
-/** The scan of that name, or where there is none a bumpy torus, packed at `psnr` dB, and its Draco twin. */
+// The scan of that name, or where there is none a bumpy torus: {name, file}.
+function findScan(scan) {
+  const file = join(dataFolder, `${scan}.ply`);
+  if (existsSync(file)) return {name: scan, file};
+  const torus = join(scratch, 'torus.obj');
+  if (!existsSync(torus)) writeTorus(torus, 240, 160);
+  return {name: 'torus', file: torus};
+}
+
+async function assetWithTwin(name, packed, mesh) {
+  const twin = await writeDracoTwin(mesh, packed);
+  return {name, glb: packed, twin: twin.path, file: `/assets/${basename(packed)}`, twinFile: `/assets/${basename(twin.path)}`};
+}
+
+/** A scan (or its stand-in) packed at `psnr` dB, and its Draco twin. */
 export async function scanAsset(scan, psnr) {
-  const found = existsSync(join(dataFolder, `${scan}.ply`)), name = found ? scan : 'torus', mesh = join(found ? dataFolder : scratch, found ? `${scan}.ply` : 'torus.obj');
-  if (!found && !existsSync(mesh)) writeTorus(mesh, 240, 160);
-  const glb = pack(`${name}_${psnr}.glb`, mesh, '--psnr', String(psnr), '--levels', 'always');
-  const twin = await writeDracoTwin(mesh, glb);
-  return {name, glb, twin: twin.path, file: `/assets/${name}_${psnr}.glb`, twinFile: `/assets/${name}_${psnr}.draco.glb`};
+  const {name, file} = findScan(scan);
+  return assetWithTwin(name, pack(`${name}_${psnr}.glb`, file, '--psnr', String(psnr), '--levels', 'always'), readMesh(file));
+}
+
+/** The same with texture coordinates, by projection along z, and a picture of noise of `side` x `side` x 3 bytes: what photographs of a scan take. */
+export async function texturedScanAsset(scan, psnr, side) {
+  const {name, file} = findScan(scan), mesh = readMesh(file), {min, max} = boundsOf(mesh.positions, 3), size = Math.max(...max.map((x, axis) => x - min[axis]));
+  mesh.texcoords = new Float32Array(mesh.positions.length / 3 * 2).map((unused, i) => (mesh.positions[3 * (i >> 1) + (i & 1)] - min[i & 1]) / size);
+  mesh.image = png(side, side, randomBytes(side * side * 3));
+  const document = new Document(), buffer = document.createBuffer();
+  const accessor = (type, array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
+  const material = document.createMaterial().setBaseColorTexture(document.createTexture().setImage(mesh.image).setMimeType('image/png'));
+  const primitive = document.createPrimitive().setIndices(accessor('SCALAR', mesh.indices)).setAttribute('POSITION', accessor('VEC3', mesh.positions))
+    .setAttribute('TEXCOORD_0', accessor('VEC2', mesh.texcoords)).setMaterial(material);
+  document.createScene().addChild(document.createNode().setMesh(document.createMesh().addPrimitive(primitive)));
+  const plain = join(scratch, `${name}_textured.glb`);
+  await new NodeIO().write(plain, document);
+  return assetWithTwin(`${name} textured`, pack(`${name}_textured_${psnr}.glb`, plain, '--psnr', String(psnr), '--levels', 'always'), mesh);
 }
 
 /** A packed surface with texture coordinates and a picture of noise, which takes most of the file: {path, imageBytes}. */

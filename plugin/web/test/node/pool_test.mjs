@@ -26,6 +26,24 @@ test('streams in several workers, each with its own progress and failure', async
   pool.dispose();
 });
 
+test('a warm pool has the worker of the next stream, and no more workers than streams want', async () => {
+  let made = 0;
+  const pool = await createPool({size: 2, createWorker: () => (++made, createWorker())});
+  pool.warm();
+  pool.warm();
+  assert.equal(made, 1);
+  const first = pool.create();
+  assert.equal(made, 1);
+  pool.create();
+  assert.equal(made, 2);
+  pool.create();
+  first.dispose();
+  pool.create();
+  assert.equal(made, 2);
+  assert.equal(pool.streams, 3);
+  pool.dispose();
+});
+
 test('appended bytes that fill their buffer are transferred', async () => {
   const pool = await createPool({size: 1, createWorker});
   const bytes = golden('custom_form_compact.drc').slice(), decoder = pool.create();
