@@ -1,5 +1,6 @@
 // Tables of a base mesh, which is checked; subdivision.cc makes those of finer levels, which is where the time goes.
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -12,19 +13,21 @@ namespace {
 // For every corner 3f + k the first corner that lies opposite the same vertex pair. Sorting the pairs of each lower vertex
 // bounds the work on any input, a fan of a million faces around one vertex included.
 std::vector<uint32_t> FirstCornerOfEdge(const std::vector<Triangle>& triangles, uint32_t num_vertices) {
-  const auto pair_of = [&](uint32_t corner) {
-    const Triangle& tri = triangles[corner / 3];
-    return std::minmax({tri[(corner + 1) % 3], tri[(corner + 2) % 3]});
-  };
   const auto num_corners = static_cast<uint32_t>(3 * triangles.size());
+  // Calls visit(corner, lower vertex, higher vertex) for all of them.
+  const auto for_each_pair = [&](const auto& visit) {
+    uint32_t corner = 0;
+    for (const Triangle& tri : triangles) {
+      for (const auto& [a, b] : {std::pair(tri[1], tri[2]), std::pair(tri[2], tri[0]), std::pair(tri[0], tri[1])}) {
+        visit(corner++, std::min(a, b), std::max(a, b));
+      }
+    }
+  };
   std::vector<uint32_t> end(num_vertices, 0);  // of the pairs of a lower vertex; first their number, then their beginning
-  for (uint32_t corner = 0; corner < num_corners; ++corner) ++end[pair_of(corner).first];
+  for_each_pair([&](uint32_t, uint32_t lower, uint32_t) { ++end[lower]; });
   for (uint32_t v = 0, begin = 0; v < num_vertices; ++v) begin += std::exchange(end[v], begin);
   std::vector<KeyedIndex> keyed(num_corners);  // the higher vertex, the corner
-  for (uint32_t corner = 0; corner < num_corners; ++corner) {
-    const auto [lower, higher] = pair_of(corner);
-    keyed[end[lower]++] = {higher, corner};
-  }
+  for_each_pair([&](uint32_t corner, uint32_t lower, uint32_t higher) { keyed[end[lower]++] = {higher, corner}; });
   std::vector<uint32_t> first(num_corners);
   for (uint32_t v = 0, begin = 0; v < num_vertices; begin = end[v++]) FindFirstEqual(&keyed, begin, end[v], &first);
   return first;
@@ -47,12 +50,13 @@ Status CheckVertexFans(const Topology& t) {
     if (one_face[v] == kNone) continue;
     uint32_t count = 0;
     bool closed = false;
-    for (const int direction : {1, 2}) {  // both ways round from the first face, unless the first way closes the ring
+    // Both ways round from the first face, unless the first way closes the ring.
+    for (const auto& side : {std::array<uint8_t, 3>{1, 2, 0}, std::array<uint8_t, 3>{2, 0, 1}}) {
       uint32_t face = one_face[v];
       while (!closed) {
-        count += direction == 1 || face != one_face[v];
+        count += side[0] == 1 || face != one_face[v];
         const int corner = t.triangles[face][0] == v ? 0 : t.triangles[face][1] == v ? 1 : 2;
-        const uint32_t next = FaceAcross(t, face, t.face_edges[face][(corner + direction) % 3]);
+        const uint32_t next = FaceAcross(t, face, t.face_edges[face][side[corner]]);
         if (next == kNone) break;
         if (next == one_face[v]) closed = true;
         face = next;
@@ -149,20 +153,22 @@ StatusOr<Topology> BuildTopology(uint32_t num_vertices, const std::vector<Triang
   t.edges.reserve(triangles.size() * 3 / 2 + 3);
   t.edge_faces.reserve(triangles.size() * 3 / 2 + 3);
   const std::vector<uint32_t> first_corner = FirstCornerOfEdge(triangles, num_vertices);
-  for (uint32_t corner = 0; corner < first_corner.size(); ++corner) {
-    const uint32_t f = corner / 3, k = corner % 3, first = first_corner[corner];
-    const uint32_t a = triangles[f][(k + 1) % 3], b = triangles[f][(k + 2) % 3];
-    if (first == corner) {
-      t.face_edges[f][k] = t.num_edges();
-      t.edges.push_back({a, b});
-      t.edge_faces.push_back({f, kNone});
-      continue;
+  for (uint32_t corner = 0, f = 0; f < t.num_faces(); ++f) {
+    for (uint32_t k = 0; k < 3; ++k, ++corner) {
+      const uint32_t first = first_corner[corner];
+      const uint32_t a = triangles[f][k == 2 ? 0 : k + 1], b = triangles[f][k == 0 ? 2 : k - 1];
+      if (first == corner) {
+        t.face_edges[f][k] = t.num_edges();
+        t.edges.push_back({a, b});
+        t.edge_faces.push_back({f, kNone});
+        continue;
+      }
+      const uint32_t e = t.face_edges[first / 3][first % 3];
+      if (t.edge_faces[e][1] != kNone) return NotTwoManifold("more than two faces meet", a, b);
+      if (t.edges[e][0] == a) return NotTwoManifold("two faces of opposite orientation meet", a, b);
+      t.edge_faces[e][1] = f;
+      t.face_edges[f][k] = e;
     }
-    const uint32_t e = t.face_edges[first / 3][first % 3];
-    if (t.edge_faces[e][1] != kNone) return NotTwoManifold("more than two faces meet", a, b);
-    if (t.edges[e][0] == a) return NotTwoManifold("two faces of opposite orientation meet", a, b);
-    t.edge_faces[e][1] = f;
-    t.face_edges[f][k] = e;
   }
   t.valence.assign(num_vertices, 0);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {

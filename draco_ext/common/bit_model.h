@@ -38,13 +38,7 @@ class BitModel {
  private:
   static constexpr uint32_t kFastCount = 24, kSlowCount = 160;
 
-  // kWeight[n] = floor(65536 / (n + 2)).
-  static constexpr std::array<uint16_t, kSlowCount + 1> MakeWeights() {
-    std::array<uint16_t, kSlowCount + 1> weights{};
-    for (uint32_t n = 0; n <= kSlowCount; ++n) weights[n] = static_cast<uint16_t>(65536 / (n + 2));
-    return weights;
-  }
-  static const std::array<uint16_t, kSlowCount + 1> kWeight;
+  static const std::array<uint16_t, kSlowCount + 1> kWeight;  // [n] = floor(65536 / (n + 2))
 
   // Estimates have 24 fractional bits.
   static uint32_t Toward(uint32_t estimate, bool bit, uint32_t weight) {
@@ -55,8 +49,6 @@ class BitModel {
   uint32_t fast_ = 1u << 23, slow_ = 1u << 23;
   uint32_t count_ = 0;  // bits seen, up to kSlowCount
 };
-
-inline constexpr std::array<uint16_t, BitModel::kSlowCount + 1> BitModel::kWeight = BitModel::MakeWeights();
 
 }  // namespace lacerta
 

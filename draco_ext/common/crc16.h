@@ -26,21 +26,10 @@ class Crc16 {
   uint16_t value() const { return state_; }
 
  private:
-  static constexpr std::array<uint16_t, 256> MakeTable() {
-    std::array<uint16_t, 256> table{};
-    for (uint32_t i = 0; i < 256; ++i) {
-      uint32_t entry = i << 8;
-      for (int k = 0; k < 8; ++k) entry = (entry & 0x8000) != 0 ? 0x1021u ^ (entry << 1) : entry << 1;
-      table[i] = static_cast<uint16_t>(entry);
-    }
-    return table;
-  }
   static const std::array<uint16_t, 256> kTable;
 
   uint16_t state_ = 0xffff;
 };
-
-inline constexpr std::array<uint16_t, 256> Crc16::kTable = Crc16::MakeTable();
 
 }  // namespace lacerta
 

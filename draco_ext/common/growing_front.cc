@@ -20,8 +20,12 @@ void GrowingFront::Link(uint32_t first, uint32_t second) {
 void GrowingFront::SetFree(uint32_t entry, uint32_t free) {
   entries_[entry].free = free;
   entries_[entry].stamp = ++stamp_;
-  constexpr uint32_t kMost = 0x7fffffff;  // only what is damaged has more
-  queue_.emplace(int64_t{stamp_} - (int64_t{std::min(free, kMost)} << 32), entry);
+  if (free < candidates_.size()) {
+    candidates_[free].push_back({entry, stamp_});
+  } else {
+    constexpr uint32_t kMost = 0x7fffffff;  // only what is damaged has more
+    others_.emplace(int64_t{stamp_} - (int64_t{std::min(free, kMost)} << 32), entry);
+  }
 }
 
 std::array<uint32_t, 3> GrowingFront::AddTriangle(const std::array<uint32_t, 3>& vertices, const std::array<uint32_t, 3>& free) {
@@ -32,10 +36,15 @@ std::array<uint32_t, 3> GrowingFront::AddTriangle(const std::array<uint32_t, 3>&
 }
 
 uint32_t GrowingFront::TakeFocus() {
-  for (;;) {
-    const auto [priority, entry] = queue_.top();
+  for (std::vector<Candidate>& candidates : candidates_) {
+    for (; !candidates.empty(); candidates.pop_back()) {
+      const auto [entry, stamp] = candidates.back();
+      if (entries_[entry].stamp == stamp) return entry;
+    }
+  }
+  for (;; others_.pop()) {
+    const auto [priority, entry] = others_.top();
     if (entries_[entry].stamp == static_cast<uint32_t>(priority)) return entry;
-    queue_.pop();
   }
 }
 

@@ -48,8 +48,13 @@ class GrowingFront {
 
   std::vector<FrontEntry> entries_;
   std::vector<uint32_t> live_;
-  // stamp - 2^32 free, entry; out of date where the stamp is. Of the type of PositionPredictor's: one instance of code.
-  std::priority_queue<std::pair<int64_t, uint32_t>> queue_;
+  struct Candidate {
+    uint32_t entry = 0, stamp = 0;
+  };
+  // For the focus, out of date where the stamp is. By the number of free edges, the last one that changed at the end; of more
+  // edges: stamp - 2^32 free, entry, of the type of PositionPredictor's queue: one instance of code.
+  std::array<std::vector<Candidate>, 12> candidates_;
+  std::priority_queue<std::pair<int64_t, uint32_t>> others_;
   uint32_t stamp_ = 0;
 };
 

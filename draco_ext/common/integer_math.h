@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -15,14 +16,12 @@ inline int64_t DivideDown(int64_t a, int64_t b) { return a / b - (a % b < 0); }
 // a / b rounded to nearest, halves up, for b > 0 and |a| < 2^62.
 inline int64_t DivideRounded(int64_t a, int64_t b) { return DivideDown(a + b / 2, b); }
 
-// floor(sqrt(x)).
+// floor(sqrt(x)). A float is where the search begins: what comes out does not depend on how it was rounded.
 inline uint32_t SquareRoot(uint64_t x) {
-  uint64_t root = 0;
-  for (uint64_t bit = uint64_t{1} << 62; bit != 0; bit >>= 2) {
-    const bool fits = x >= root + bit;
-    if (fits) x -= root + bit;
-    root = (root >> 1) + (fits ? bit : 0);
-  }
+  constexpr uint64_t kLargest = 0xffffffffu;
+  uint64_t root = std::min(static_cast<uint64_t>(std::sqrt(static_cast<double>(x))), kLargest);
+  while (root * root > x) --root;
+  while (root < kLargest && (root + 1) * (root + 1) <= x) ++root;
   return static_cast<uint32_t>(root);
 }
 

@@ -55,7 +55,6 @@ PositionPredictor::PositionPredictor(const Topology& t)
   turn_.reserve(t.num_vertices);
   for (uint32_t v = 0; v < t.num_vertices; ++v) {
     const uint32_t whole = on_border[v] ? 2 * (uint32_t{t.valence[v]} - 1) : t.valence[v];
-    
     turn_.push_back(kTurns[std::clamp(whole, 2u, 24u) - 2]);
   }
 }
@@ -104,20 +103,22 @@ void PositionPredictor::SetPoint(uint32_t vertex, const LatticePoint& point) {
   points_[vertex] = point;
   is_known_[vertex] = 1;
   last_ = vertex;
+  for (uint32_t i = first_flap_[vertex]; i < first_flap_[vertex + 1]; ++i) {
+    if (++num_known_[flaps_[i]] == 3) UseFlap(flaps_[i], vertex);
+  }
   for (const uint32_t u : neighbors(vertex)) {
     if (is_known_[u]) continue;
     Equations& sums = equations_[u];
-    if (sums.num_neighbors++ >= 2 * kMostFlaps) continue;
-    for (size_t c = 0; c < 3; ++c) sums.target[c] += kNeighborWeight * point[c];
-    sums.weight += kNeighborWeight;
+    if (sums.num_neighbors < 2 * kMostFlaps) {
+      for (size_t c = 0; c < 3; ++c) sums.target[c] += kNeighborWeight * point[c];
+      sums.weight += kNeighborWeight;
+      ++sums.num_neighbors;
+    }
     if (sums.num_flaps > 0) queue_.emplace(sums.weight, ~u);
-  }
-  for (uint32_t i = first_flap_[vertex]; i < first_flap_[vertex + 1]; ++i) {
-    if (++num_known_[flaps_[i]] == 3) UseFlap(flaps_[i]);
   }
 }
 
-void PositionPredictor::UseFlap(uint32_t edge) {
+void PositionPredictor::UseFlap(uint32_t edge, uint32_t newest) {
   const auto [a, b] = t_.edges[edge];
   const std::array<uint32_t, 4> v = {a, b, OppositeVertex(t_, t_.edge_faces[edge][0], edge),
                                      OppositeVertex(t_, t_.edge_faces[edge][1], edge)};
@@ -133,7 +134,7 @@ void PositionPredictor::UseFlap(uint32_t edge) {
     coefficient[static_cast<size_t>(end)] = t - 512;
     int64_t squares = 0;
     for (const int64_t x : coefficient) squares += x * x;
-        const int64_t weight = (int64_t{1} << 24) / squares;
+    const int64_t weight = (int64_t{1} << 24) / squares;
     const int64_t mine = coefficient[unknown];
     for (size_t c = 0; c < 3; ++c) {
       int64_t rest = 0;
@@ -153,7 +154,8 @@ void PositionPredictor::UseFlap(uint32_t edge) {
     const size_t c1 = (c + 1) % 3, c2 = (c + 2) % 3;
     sums.normal[c] += sign * (x[c1] * y[c2] - x[c2] * y[c1]);
   }
-  queue_.emplace(sums.weight, ~v[unknown]);
+  // Neighbors of the newest vertex are put into the queue with all their flaps; across the edge there is none.
+  if (unknown >= 2 && newest == v[5 - unknown]) queue_.emplace(sums.weight, ~v[unknown]);
 }
 
 }  // namespace lacerta

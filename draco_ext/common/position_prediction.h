@@ -61,7 +61,8 @@ class PositionPredictor {
     uint32_t num_flaps = 0, num_neighbors = 0;
   };
 
-  void UseFlap(uint32_t edge);
+  // newest: the vertex of the flap that became known last.
+  void UseFlap(uint32_t edge, uint32_t newest);
 
   const Topology& t_;
   std::vector<int32_t> turn_;  // #V, 2 cos of the mean angle around the vertex, times 256

@@ -44,7 +44,8 @@ uint32_t CodeUniform(uint32_t count, uint32_t value, Coder* coder) {
   uint32_t first = 0;
   while (count > 1) {
     const uint32_t upper = count / 2, lower = count - upper;
-    BitModel share(static_cast<uint32_t>((uint64_t{upper} << kProbabilityBits) / count));
+    // (upper << 16) / count in 32 bits: one half less the rest of an odd count.
+    BitModel share(count % 2 == 0 ? 32768 : 32768 - (32767 + count) / count);
     if (coder->Code(share, value >= first + lower)) {
       first += lower;
       count = upper;

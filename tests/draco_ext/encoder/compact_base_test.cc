@@ -296,6 +296,24 @@ TEST(SymbolCodingTest, CodesIntegers) {
   }
 }
 
+// Takes down the probabilities that it is given, and says one.
+struct ProbabilityListener {
+  std::vector<uint32_t> heard;
+  bool Code(const BitModel& model, bool) {
+    heard.push_back(model.ProbabilityOfOne());
+    return true;
+  }
+};
+
+TEST(SymbolCodingTest, UniformHalvesByTheShareOfTheUpperPart) {
+  for (const uint32_t count : {2u, 3u, 5u, 7u, 100u, 255u, 257u, 32767u, 32769u, 65537u, (1u << 29) - 1, (1u << 31) + 1}) {
+    ProbabilityListener listener;
+    CodeUniform(count, 0, &listener);
+    const uint64_t upper = count / 2;
+    EXPECT_EQ(listener.heard.front(), std::max<uint64_t>((upper << 16) / count, kMinProbability)) << count;
+  }
+}
+
 TEST(IntegerMathTest, RoundsAsTold) {
   EXPECT_EQ(DivideDown(-7, 2), -4);
   EXPECT_EQ(DivideRounded(-7, 2), -3);
@@ -305,6 +323,11 @@ TEST(IntegerMathTest, RoundsAsTold) {
     const uint64_t root = SquareRoot(x);
     EXPECT_LE(root * root, x);
     EXPECT_TRUE(root == 0xffffffffu || (root + 1) * (root + 1) > x);
+  }
+  for (uint64_t root = 1; root < uint64_t{1} << 32; root += 1 + root / 97) {  // where floats round the other way, too
+    EXPECT_EQ(SquareRoot(root * root), root);
+    EXPECT_EQ(SquareRoot(root * root - 1), root - 1);
+    EXPECT_EQ(SquareRoot(root * root + 2 * root), root);
   }
   EXPECT_EQ(ScaledTo({3, 0, -4}, 10), (std::array<int64_t, 3>{614, 0, -820}));
   EXPECT_EQ(ScaledTo({0, 0, 0}, 12), (std::array<int64_t, 3>{0, 0, 0}));

@@ -13,7 +13,7 @@ export async function drawCurves(page, rows, path) {
   const ticks = (from, to, count) => Array.from({length: count + 1}, (unused, i) => from + (to - from) * i / count);
   const text = (at, down, anchor, words) => `<text x="${at}" y="${down}" text-anchor="${anchor}">${words}</text>`;
   const svg = `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" style="background:#fff" font-family="sans-serif" font-size="12">
-    ${ticks(0, end, 6).map(time => text(x(time), height - bottom + 16, 'middle', (time / 1000).toFixed(1))).join('')}
+    ${ticks(0, end, 6).map(time => text(x(time), height - bottom + 16, 'middle', (time / 1000).toFixed(end < 3000 ? 2 : 1))).join('')}
     ${ticks(low, high, 6).map(psnr => text(left - 6, y(psnr) + 4, 'end', psnr.toFixed(0)) + `<path d="M${left},${y(psnr)}H${width - right}" stroke="#ddd"/>`).join('')}
     <path d="${steps('lacerta')}" fill="none" stroke="#0a7d33" stroke-width="2"/><path d="${steps('draco')}" fill="none" stroke="#b3261e" stroke-width="2"/>
     ${text((left + width) / 2, height - 12, 'middle', 'seconds after the request, over 100 kB/s')}${text(left, 18, 'start', 'dB on the screen: Lacerta green, Draco of the same final error red')}</svg>`;
