@@ -1,6 +1,6 @@
 #include "common/butterfly.h"
 
-#include <algorithm>
+#include "common/fast_point.h"
 
 namespace lacerta {
 
@@ -45,54 +45,41 @@ uint32_t NextCurveEdge(const Topology& t, uint32_t edge, uint32_t vertex) {
 
 namespace {
 
-// Whether the eight-point stencil of `edge` needs no case of its own: no curve at either end, and no extraordinary vertex.
-bool IsPlain(const Topology& t, uint32_t edge) {
-  for (const uint32_t v : t.edges[edge]) {
-    if (t.role[v] != CurveRole::kSmooth || IsExtraordinary(t, v)) return false;
-  }
-  return true;
+// Of every vertex, whether an edge between two such vertices needs no case of its own: no curve, and no extraordinary vertex. #V.
+std::vector<uint8_t> PlainVertices(const Topology& t) {
+  std::vector<uint8_t> is_plain(t.num_vertices);
+  for (uint32_t v = 0; v < t.num_vertices; ++v) is_plain[v] = t.role[v] == CurveRole::kSmooth && !IsExtraordinary(t, v);
+  return is_plain;
 }
 
-// For every corner of a face the vertex on the other side of its opposite edge; kNone beyond the border: #F.
-std::vector<Triangle> VerticesAcross(const Topology& t) {
-  std::vector<Triangle> across(t.num_faces());
-  for (uint32_t e = 0; e < t.num_edges(); ++e) {
-    const auto& [f, g] = t.edge_faces[e];
-    const int i = EdgeCorner(t, f, e);
-    if (g == kNone) {
-      across[f][i] = kNone;
-      continue;
-    }
-    const int k = EdgeCorner(t, g, e);
-    across[f][i] = t.triangles[g][k];
-    across[g][k] = t.triangles[f][i];
-  }
-  return across;
-}
-
-// What VisitRegular adds up at an edge that IsPlain, in the same order: nearly all edges of fine levels are.
-Vec3f PredictPlain(const Topology& t, const std::vector<Triangle>& across, const Vec3f* positions, uint32_t edge) {
+// What VisitRegular adds up at an edge between two plain vertices, in the same order: nearly all edges of fine levels are.
+template <typename Point>
+Vec3f PredictPlain(const Topology& t, const std::vector<uint32_t>& opposite_pairs, const Vec3f* positions, uint32_t edge) {
   constexpr int kNext[3] = {1, 2, 0}, kPrevious[3] = {2, 0, 1};
   const auto& [a, b] = t.edges[edge];
-  Vec3f sum;
-  sum += positions[a] * 0.5f;
-  sum += positions[b] * 0.5f;
+  Point sum{};
+  const auto add = [&](uint32_t v, float weight) { sum += LoadPoint<Point>(positions + v) * weight; };
+  add(a, 0.5f);
+  add(b, 0.5f);
   for (const uint32_t face : t.edge_faces[edge]) {
-    const int corner = EdgeCorner(t, face, edge);
-    sum += positions[t.triangles[face][corner]] * 0.125f;
-    sum += positions[across[face][kNext[corner]]] * -0.0625f;
-    sum += positions[across[face][kPrevious[corner]]] * -0.0625f;
+    const auto& sides = t.face_edges[face];
+    const Triangle& corners = t.triangles[face];
+    const int corner = EdgeCorner(t, face, edge), next = kNext[corner], previous = kPrevious[corner];
+    add(corners[corner], 0.125f);
+    add(opposite_pairs[sides[next]] ^ corners[next], -0.0625f);
+    add(opposite_pairs[sides[previous]] ^ corners[previous], -0.0625f);
   }
-  return sum;
+  return ToVec3f(sum);
 }
 
-}  // namespace
-
-void PredictMidpoints(const Topology& t, const StencilTable& table, const Vec3f* positions, Vec3f* midpoints) {
-  const std::vector<Triangle> across = VerticesAcross(t);
+template <typename Point>
+void Predict(const Topology& t, const StencilTable& table, const Vec3f* positions, Vec3f* midpoints) {
+  const std::vector<uint8_t> is_plain = PlainVertices(t);
+  const std::vector<uint32_t> opposite_pairs = OppositePairs(t);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
-    if (IsPlain(t, e)) {
-      midpoints[e] = PredictPlain(t, across, positions, e);
+    const auto& [a, b] = t.edges[e];
+    if (is_plain[a] != 0 && is_plain[b] != 0) {
+      midpoints[e] = PredictPlain<Point>(t, opposite_pairs, positions, e);
       continue;
     }
     Vec3f sum;
@@ -101,9 +88,16 @@ void PredictMidpoints(const Topology& t, const StencilTable& table, const Vec3f*
   }
 }
 
+}  // namespace
+
+void PredictMidpoints(const Topology& t, const StencilTable& table, std::vector<Vec3f>* positions) {
+  positions->resize(size_t{t.num_vertices} + t.num_edges());
+  Predict<FastPoint>(t, table, positions->data(), positions->data() + t.num_vertices);
+}
+
 std::vector<Vec3f> PredictMidpoints(const Topology& topology, const StencilTable& table, const std::vector<Vec3f>& positions) {
   std::vector<Vec3f> midpoints(topology.num_edges());
-  PredictMidpoints(topology, table, positions.data(), midpoints.data());
+  Predict<Vec3f>(topology, table, positions.data(), midpoints.data());
   return midpoints;
 }
 

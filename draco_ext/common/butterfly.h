@@ -49,8 +49,8 @@ void VisitStencil(const Topology& t, const StencilTable& table, uint32_t edge, c
 
 // Predicted position of the midpoint of every edge: #E.
 std::vector<Vec3f> PredictMidpoints(const Topology& topology, const StencilTable& table, const std::vector<Vec3f>& positions);
-// The same, from #V positions into #E midpoints, which may lie behind them in one array.
-void PredictMidpoints(const Topology& topology, const StencilTable& table, const Vec3f* positions, Vec3f* midpoints);
+// The same, bit by bit, appended to the #V positions: #V + #E.
+void PredictMidpoints(const Topology& topology, const StencilTable& table, std::vector<Vec3f>* positions);
 
 // --- implementation of the template ---
 

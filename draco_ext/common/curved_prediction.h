@@ -9,6 +9,7 @@
 
 #include <vector>
 
+#include "common/local_frame.h"
 #include "common/subdivision.h"
 #include "lacerta/mesh.h"
 
@@ -16,15 +17,14 @@ namespace lacerta {
 
 // What is to be added to the butterfly's midpoints: #E, along the normals of their frames (common/local_frame.h). Zero at edges with
 // an end on a curve of the mesh, and where the surface is degenerate.
-//   positions  #V of the coarse level or more
-//   midpoints  #E from PredictMidpoints
-//   frame_normals  #E from FrameNormals, where they are at hand
-std::vector<Vec3f> CurveOffsets(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints);
+//   positions      #V of the coarse level or more
+//   midpoints      #E from PredictMidpoints
+//   frame_normals  #E from FrameNormals
 std::vector<Vec3f> CurveOffsets(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints, Span<const Vec3f> frame_normals);
 
 // That of a level that is curved; zeros of another.
 inline std::vector<Vec3f> LevelOffsets(const Topology& coarse, bool is_curved, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {
-  return is_curved ? CurveOffsets(coarse, positions, midpoints) : std::vector<Vec3f>(coarse.num_edges());
+  return is_curved ? CurveOffsets(coarse, positions, midpoints, FrameNormals(coarse, positions, midpoints)) : std::vector<Vec3f>(coarse.num_edges());
 }
 
 }  // namespace lacerta

@@ -12,17 +12,6 @@ Vec3f NormalOf(const Vec3f& area) {
   return normal == Vec3f{} ? Vec3f{0, 0, 1} : normal;
 }
 
-using FaceAreas = std::array<Vec3f, 4>;  // area vectors of the triangles at corners 0, 1, 2 and in the middle
-
-std::vector<FaceAreas> AreasOf(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {
-  std::vector<FaceAreas> areas(coarse.num_faces());
-  for (uint32_t f = 0; f < coarse.num_faces(); ++f) {
-    const SplitFace split(coarse, positions, midpoints, f);
-    areas[f] = {split.AtCorner(0), split.AtCorner(1), split.AtCorner(2), split.InMiddle()};
-  }
-  return areas;
-}
-
 }  // namespace
 
 Vec3f AnyOrthogonal(const Vec3f& n) {
@@ -44,17 +33,14 @@ LocalFrame FrameWithNormal(const Topology& coarse, Span<const Vec3f> positions, 
 }
 
 std::vector<Vec3f> FrameNormals(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {
-  const std::vector<FaceAreas> areas = AreasOf(coarse, positions, midpoints);
-  std::vector<Vec3f> normals(coarse.num_edges());
-  for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-    Vec3f area;
-    for (const uint32_t face : coarse.edge_faces[e]) {
-      if (face == kNone) continue;
-      const int k = EdgeCorner(coarse, face, e);
-      area += areas[face][3] + areas[face][(k + 1) % 3] + areas[face][(k + 2) % 3];
-    }
-    normals[e] = NormalOf(area);
+  std::vector<Vec3f> normals(coarse.num_edges());  // area vectors around, at first
+  for (uint32_t f = 0; f < coarse.num_faces(); ++f) {
+    const SplitFace split(coarse, positions, midpoints, f);
+    const Vec3f middle = split.InMiddle();
+    const std::array<Vec3f, 3> corners = {split.AtCorner(0), split.AtCorner(1), split.AtCorner(2)};
+    for (size_t k = 0; k < 3; ++k) normals[coarse.face_edges[f][k]] += middle + corners[(k + 1) % 3] + corners[(k + 2) % 3];
   }
+  for (Vec3f& n : normals) n = NormalOf(n);
   return normals;
 }
 

@@ -77,6 +77,14 @@ Topology RefineWithoutEdges(const Topology& c) {
   return t;
 }
 
+std::vector<uint32_t> OppositePairs(const Topology& t) {
+  std::vector<uint32_t> pairs(t.num_edges());
+  for (uint32_t f = 0; f < t.num_faces(); ++f) {
+    for (size_t k = 0; k < 3; ++k) pairs[t.face_edges[f][k]] ^= t.triangles[f][k];
+  }
+  return pairs;
+}
+
 LevelCounts SubdividedCounts(LevelCounts counts, int levels) {
   constexpr uint64_t kMaxFaces = uint64_t{1} << 58;
   for (int level = 0; level < levels && counts.faces > 0 && counts.faces < kMaxFaces; ++level) {

@@ -88,6 +88,9 @@ inline uint32_t OppositeVertex(const Topology& t, uint32_t face, uint32_t edge) 
   return t.triangles[face][EdgeCorner(t, face, edge)];
 }
 
+// Of every edge both vertices opposite to it, by exclusive or, so that one of them gives the other: #E. Of a border edge, the one.
+std::vector<uint32_t> OppositePairs(const Topology& topology);
+
 }  // namespace lacerta
 
 #endif  // LACERTA_COMMON_SUBDIVISION_H_

@@ -11,9 +11,10 @@ namespace {
 
 using EdgeOffset = std::pair<uint32_t, Vec3f>;
 
-// Details of the edges that have any; their frames depend on the butterfly's midpoints around.
+// Details of the edges that have any; their frames depend on the butterfly's midpoints around. frame_normals: of all edges, or empty where they are
+// not at hand.
 std::vector<EdgeOffset> Details(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, Span<const Vec3f> positions,
-                                Span<const Vec3f> midpoints) {
+                                Span<const Vec3f> midpoints, Span<const Vec3f> frame_normals) {
   std::vector<EdgeOffset> details;
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     const int32_t q1 = quantized.tangential[size_t{2} * e], q2 = quantized.tangential[size_t{2} * e + 1];
@@ -22,7 +23,8 @@ std::vector<EdgeOffset> Details(const Topology& coarse, const LevelSteps& steps,
     const Vec3f detail = {Dequantize(q1, steps.tangential_step, steps.tangential_bias),
                           Dequantize(q2, steps.tangential_step, steps.tangential_bias),
                           Dequantize(qn, steps.normal_step, steps.normal_bias)};
-    details.emplace_back(e, LocalFrameAt(coarse, positions, midpoints, e).ToWorld(detail));
+    const LocalFrame frame = frame_normals.empty() ? LocalFrameAt(coarse, positions, midpoints, e) : FrameWithNormal(coarse, positions, e, frame_normals[e]);
+    details.emplace_back(e, frame.ToWorld(detail));
   }
   return details;
 }
@@ -33,10 +35,12 @@ void AddDetails(const Topology& coarse, const LevelSteps& steps, const Quantized
   if (steps.is_silent() && !steps.is_curved) return;
   Vec3f* const midpoints = positions->data() + coarse.num_vertices;
   const Span<const Vec3f> predicted(midpoints, coarse.num_edges());
+  std::vector<Vec3f> frame_normals;
+  if (steps.is_curved) frame_normals = FrameNormals(coarse, *positions, predicted);
   std::vector<EdgeOffset> details;
-  if (!steps.is_silent()) details = Details(coarse, steps, quantized, *positions, predicted);
+  if (!steps.is_silent()) details = Details(coarse, steps, quantized, *positions, predicted, frame_normals);
   if (steps.is_curved) {
-    const std::vector<Vec3f> offsets = CurveOffsets(coarse, *positions, predicted);
+    const std::vector<Vec3f> offsets = CurveOffsets(coarse, *positions, predicted, frame_normals);
     for (uint32_t e = 0; e < coarse.num_edges(); ++e) midpoints[e] += offsets[e];
   }
   for (const auto& [e, detail] : details) midpoints[e] += detail;
@@ -47,8 +51,7 @@ void AddDetails(const Topology& coarse, const LevelSteps& steps, const Quantized
 
 void SynthesizeLevel(const Topology& coarse, const StencilTable& table, const LevelSteps& steps,
                      const QuantizedLevel& quantized, std::vector<Vec3f>* positions) {
-  positions->resize(size_t{coarse.num_vertices} + coarse.num_edges());
-  PredictMidpoints(coarse, table, positions->data(), positions->data() + coarse.num_vertices);
+  PredictMidpoints(coarse, table, positions);
   AddDetails(coarse, steps, quantized, positions);
 }
 

@@ -178,7 +178,10 @@ TEST(PredictMidpointsTest, AddsUpStencilsInTheirOrder) {
         VisitStencil(t, table, e, [&](uint32_t v, float weight) { sum += positions[v] * weight; });
         ASSERT_EQ(midpoints[e], sum) << "edge " << e << " of " << t.num_edges();  // to the last bit
       }
+      std::vector<Vec3f> appended = positions;  // in registers
+      PredictMidpoints(t, table, &appended);
       positions.insert(positions.end(), midpoints.begin(), midpoints.end());
+      ASSERT_EQ(appended, positions);
     }
   }
 }

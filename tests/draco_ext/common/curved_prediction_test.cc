@@ -24,7 +24,7 @@ struct Curved {
 Curved CurvesOf(const TriangleMesh& mesh) {
   Curved result{shapes::TopologyOf(mesh), {}, {}};
   result.butterfly = PredictMidpoints(result.topology, StencilTable(result.topology), mesh.positions);
-  result.offsets = CurveOffsets(result.topology, mesh.positions, result.butterfly);
+  result.offsets = CurveOffsets(result.topology, mesh.positions, result.butterfly, FrameNormals(result.topology, mesh.positions, result.butterfly));
   return result;
 }
 
@@ -108,6 +108,17 @@ TEST(CurvedPrediction, StaysInAPlaneAndAtCurves) {
     moves = moves || !(c.offsets[e] == Vec3f());
   }
   EXPECT_TRUE(moves);
+}
+
+TEST(CurvedPrediction, IsTheSameInRegisters) {
+  TriangleMesh bent = shapes::Grid(6);
+  for (Vec3f& p : bent.positions) p.z = 0.5f * std::sin(1.1f * p.x) * std::cos(0.9f * p.y);
+  for (const TriangleMesh& mesh : {UnevenSphere(), bent}) {
+    const Curved c = CurvesOf(mesh);
+    std::vector<Vec3f> more = mesh.positions;
+    more.emplace_back();
+    EXPECT_EQ(CurveOffsets(c.topology, more, c.butterfly, FrameNormals(c.topology, more, c.butterfly)), c.offsets);
+  }
 }
 
 TEST(CurvedPrediction, ScalesAndTurnsWithTheMesh) {

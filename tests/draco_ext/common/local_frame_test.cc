@@ -44,6 +44,20 @@ TEST(LocalFrameTest, NormalPointsOutwardOnTheIcosahedron) {
   for (uint32_t e = 0; e < t.num_edges(); ++e) EXPECT_GT(Dot(frames[e].normal, Normalized(midpoints[e])), 0.999f);
 }
 
+TEST(LocalFrameTest, OneAtATimeIsTheSameAsAll) {
+  for (const TriangleMesh& mesh : {shapes::Torus(7, 5), shapes::Pillow(), shapes::Grid(4), shapes::Fan(6)}) {
+    const Topology t = shapes::TopologyOf(mesh);
+    const std::vector<Vec3f> midpoints = PredictMidpoints(t, StencilTable(t), mesh.positions);
+    const std::vector<LocalFrame> frames = ComputeLocalFrames(t, mesh.positions, midpoints);
+    for (uint32_t e = 0; e < t.num_edges(); ++e) {
+      const LocalFrame frame = LocalFrameAt(t, mesh.positions, midpoints, e);
+      EXPECT_EQ(frame.normal, frames[e].normal);  // to the last bit
+      EXPECT_EQ(frame.tangent1, frames[e].tangent1);
+      EXPECT_EQ(frame.tangent2, frames[e].tangent2);
+    }
+  }
+}
+
 TEST(LocalFrameTest, FollowsThePlaneAndTheEdges) {
   const TriangleMesh mesh = shapes::Grid(3);
   const Topology t = shapes::TopologyOf(mesh);

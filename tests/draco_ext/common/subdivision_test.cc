@@ -314,5 +314,17 @@ TEST(SubdividedCountsTest, NeverOverflowsIntoASmallCount) {
   EXPECT_EQ(none.vertices + none.edges + none.faces, 0u);
 }
 
+TEST(SubdivisionTest, OppositePairsGiveOneVertexForTheOther) {
+  for (const TriangleMesh& mesh : {shapes::Icosahedron(), shapes::Fan(6), shapes::Pillow()}) {
+    const Topology t = Refine(shapes::TopologyOf(mesh));
+    const std::vector<uint32_t> pairs = OppositePairs(t);
+    ASSERT_EQ(pairs.size(), t.num_edges());
+    for (uint32_t e = 0; e < t.num_edges(); ++e) {
+      const auto& [f, g] = t.edge_faces[e];
+      EXPECT_EQ(pairs[e] ^ OppositeVertex(t, f, e), g == kNone ? 0 : OppositeVertex(t, g, e));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lacerta
