@@ -71,8 +71,7 @@ ForecastScale::ForecastScale(float from, float to) {
   up_ = std::clamp(static_cast<int>(from_bits >> 7) - static_cast<int>(to_bits >> 7), -40, 24);
 }
 
-Forecast ForecastScale::operator()(const Forecast& forecast) const {
-  if (forecast.magnitude == 0) return forecast;  // most of a fine level
+Forecast ForecastScale::Scaled(const Forecast& forecast) const {
   const uint64_t ratio = uint64_t{forecast.magnitude} * from_significand_ * 256 / to_significand_;
   const uint64_t scaled = up_ >= 0 ? (ratio << up_) >> 8 : ratio >> (8 - up_);
   return {static_cast<uint32_t>(std::min<uint64_t>(scaled, kMaxForecast)), forecast.sign};

@@ -104,9 +104,13 @@ class CodedNeighbors {
 class ForecastScale {
  public:
   ForecastScale(float from, float to);
-  Forecast operator()(const Forecast& forecast) const;
+  Forecast operator()(const Forecast& forecast) const {
+    return forecast.magnitude == 0 ? forecast : Scaled(forecast);  // zero: most of a fine level
+  }
 
  private:
+  Forecast Scaled(const Forecast& forecast) const;
+
   uint32_t from_significand_, to_significand_;
   int up_;  // the quotient of the powers of two, as an exponent
 };

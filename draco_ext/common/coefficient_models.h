@@ -23,7 +23,7 @@ inline int ActivityClass(uint32_t sixteenths) {
   constexpr std::array<uint32_t, kNumActivityClasses - 1> kLowerBounds = {1,  3,  5,  8,   12,  17, 24,
                                                                           36, 56, 90, 150, 260, 500};
   int c = 0;
-  while (c < kNumActivityClasses - 1 && sixteenths >= kLowerBounds[c]) ++c;
+  for (const uint32_t bound : kLowerBounds) c += sixteenths >= bound;  // all of them: no branch to be foreseen wrongly
   return c;
 }
 
@@ -60,11 +60,9 @@ struct SetModels {
 
 inline uint32_t Magnitude(int32_t q) { return static_cast<uint32_t>(q < 0 ? -int64_t{q} : int64_t{q}); }
 
-// Codes one coefficient; returns it. With an encoding coder `value` is what is coded; a decoding coder ignores it, and
-// whatever it answers, the magnitude stays within kMaxMagnitude.
+// The rest of a coefficient that is not zero.
 template <typename Coder>
-int32_t CodeCoefficient(Coder& coder, SetModels& models, const CoefficientContext& context, int32_t value) {
-  if (!coder.Code(models.nonzero[context.activity][context.companion], value != 0)) return 0;
+int32_t CodeNonzero(Coder& coder, SetModels& models, const CoefficientContext& context, int32_t value) {
   const bool negative = context.expect_negative !=
                         coder.Code(models.unexpected_sign[context.sign_class], (value < 0) != context.expect_negative);
   const uint32_t target = Magnitude(value);
@@ -73,6 +71,14 @@ int32_t CodeCoefficient(Coder& coder, SetModels& models, const CoefficientContex
   while (magnitude <= kUnaryLength && coder.Code(larger[magnitude - 1], target > magnitude)) ++magnitude;
   if (magnitude > kUnaryLength) magnitude = kUnaryLength + CodePositive(models.rest, target - kUnaryLength, &coder);
   return negative ? -static_cast<int32_t>(magnitude) : static_cast<int32_t>(magnitude);
+}
+
+// Codes one coefficient; returns it. With an encoding coder `value` is what is coded; a decoding coder ignores it, and
+// whatever it answers, the magnitude stays within kMaxMagnitude.
+template <typename Coder>
+int32_t CodeCoefficient(Coder& coder, SetModels& models, const CoefficientContext& context, int32_t value) {
+  if (!coder.Code(models.nonzero[context.activity][context.companion], value != 0)) return 0;
+  return CodeNonzero(coder, models, context, value);
 }
 
 }  // namespace lacerta
