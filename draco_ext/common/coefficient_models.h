@@ -62,6 +62,9 @@ inline uint32_t Magnitude(int32_t q) { return static_cast<uint32_t>(q < 0 ? -int
 
 // The rest of a coefficient that is not zero.
 template <typename Coder>
+#ifdef __GNUC__
+__attribute__((noinline))  // few are: the rest of CodeCoefficient is to become part of its callers
+#endif
 int32_t CodeNonzero(Coder& coder, SetModels& models, const CoefficientContext& context, int32_t value) {
   const bool negative = context.expect_negative !=
                         coder.Code(models.unexpected_sign[context.sign_class], (value < 0) != context.expect_negative);
