@@ -4,12 +4,9 @@
 // on a base at hand, without triangles. A mesh file is coded by Draco at speed 0 with 12 bits first: "draco" decodes that. Without files,
 // a bumpy torus is packed and decoded. Items are triangles of the result, "levels" aside: vertices. bytes_per_vertex: the most
 // memory taken at a time, over the vertices of the result, which is part of it; over_result: over the bytes of positions and triangles.
-// Memory that is freed stays with the process, so that the first touch of pages, which counts for one decoder and not for the other by
-// where malloc draws its lines, is left out of both.
 #include <benchmark/benchmark.h>
 #include <draco/compression/decode.h>
 #include <draco/compression/encode.h>
-#include <malloc.h>
 
 #include <cmath>
 #include <cstdio>
@@ -154,10 +151,6 @@ void RegisterTorus() {
 }  // namespace lacerta
 
 int main(int argc, char** argv) {
-#ifdef M_TRIM_THRESHOLD
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // no more is allowed
-#endif
   benchmark::Initialize(&argc, argv);
   for (int i = 1; i < argc; ++i) lacerta::RegisterFile(argv[i]);
   if (argc == 1) lacerta::RegisterTorus();
