@@ -228,22 +228,20 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
 }
 
 // The surface at the target on its own connectivity, remeshed, or as a simplified mesh without levels, whichever is better. crowding: of
-// the mesh (TriangleTree).
-StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, double crowding, const SurfaceDistanceMeter& meter,
+// the mesh (TriangleTree); input: what is remeshed for it.
+StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, ProxiedInput* input, double crowding, const SurfaceDistanceMeter& meter,
                                      const ResolvedTarget& target, const EncodeOptions& options, EncodeReport report) {
   if (options.levels == LevelChoice::kNever) return Unsupported("no refinement levels were asked for");
   if (crowding > kMostCrowding) return Unsupported("too many triangles go through each other for a surface to be followed");
   if (options.progress) options.progress(0.0, "looking at the surface");
   std::optional<ChosenStream> chosen = EncodeSubdivided(mesh, meter, target, options);
   report.subdivided_input = chosen.has_value();
-  std::optional<TriangleMesh> proxy;
   std::optional<SimplerSurface> simpler;
   bool is_simpler = false;
   // A base as small as remeshes have is the best there is; a larger one may take more bytes than another surface in all.
   if (!chosen || HasLargeBase(*chosen, target, mesh)) {
     PartsReport parts;
-    proxy = InputProxy(mesh, meter, target);
-    StatusOr<ChosenStream> remeshed = CodeRemeshed(proxy ? *proxy : mesh, meter, target, options, &simpler, &is_simpler, &parts);
+    StatusOr<ChosenStream> remeshed = CodeRemeshed(input->Mesh(), meter, target, options, &simpler, &is_simpler, &parts);
     if (!chosen && !is_simpler && !remeshed.ok()) return remeshed.status();
     const bool is_remeshed = remeshed.ok() && (!chosen || !IsWorthItsVertices(chosen->measured, remeshed.value().measured, target));
     if (is_remeshed) chosen = std::move(remeshed).value();
@@ -282,13 +280,12 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   report.diagonal = meter.diagonal();
 
   const double crowding = TriangleTree(mesh).Crowding();
-  StatusOr<EncodedParts> encoded = EncodeSurface(mesh, crowding, meter, target, options, report);
+  ProxiedInput proxied(mesh, meter, target);
+  StatusOr<EncodedParts> encoded = EncodeSurface(mesh, &proxied, crowding, meter, target, options, report);
   if (!encoded.ok()) {  // without refinement, then, with the reason
     if (options.progress) options.progress(0.1, "simplifying");
-    const bool is_crowded = crowding > kMostCrowding;
-    const std::optional<TriangleMesh> proxy = is_crowded ? std::nullopt : InputProxy(mesh, meter, target);
-    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, is_crowded ? CodeCrowdedInput(mesh, crowding, meter, target)
-                                                              : CodeZeroLevel(proxy ? *proxy : mesh, meter, target, EffortOf(options.effort)));
+    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, crowding > kMostCrowding ? CodeCrowdedInput(mesh, crowding, meter, target)
+                                                                            : CodeZeroLevel(proxied.Mesh(), meter, target, EffortOf(options.effort)));
     const char* const miss = zero.meets_target ? "" : "; the target is out of reach, this is the nearest";
     encoded = FromZeroLevel(std::move(zero), report, encoded.status().message() + miss);
   }

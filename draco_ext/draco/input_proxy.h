@@ -14,7 +14,7 @@ namespace lacerta {
 
 struct InputProxyOptions {
   uint32_t fewest_triangles = 200'000;
-  double share = 0.15; // of the distance that the stream may have, at most
+  double share = 0.15;  // of the distance that the stream may have, at most
 };
 
 // The input, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them.
@@ -23,6 +23,28 @@ struct InputProxyOptions {
 //   target   of the stream
 std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                        const InputProxyOptions& options = {});
+
+// What is remeshed and simplified: the input, or its proxy where there is one. What it refers to must outlive it.
+class ProxiedInput {
+ public:
+  // As for InputProxy.
+  ProxiedInput(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target)
+      : cleaned_(cleaned), meter_(meter), target_(target) {}
+
+  // Makes the proxy when first called. Not for several threads at a time.
+  const TriangleMesh& Mesh() {
+    if (!is_made_) proxy_ = InputProxy(cleaned_, meter_, target_);
+    is_made_ = true;
+    return proxy_ ? *proxy_ : cleaned_;
+  }
+
+ private:
+  const TriangleMesh& cleaned_;
+  const SurfaceDistanceMeter& meter_;
+  const ResolvedTarget& target_;
+  bool is_made_ = false;
+  std::optional<TriangleMesh> proxy_;
+};
 
 }  // namespace lacerta
 
