@@ -2,8 +2,11 @@
 #ifndef LACERTA_COMMON_COEFFICIENT_SETS_H_
 #define LACERTA_COMMON_COEFFICIENT_SETS_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "lacerta/vec3.h"
 
 namespace lacerta {
 
@@ -57,6 +60,18 @@ inline float Dequantize(int32_t q, float step, uint8_t bias) {
   const float magnitude =
       (q < 0 ? -static_cast<float>(q) : static_cast<float>(q)) - static_cast<float>(bias) / kBiasUnit;
   return q < 0 ? -magnitude * step : magnitude * step;
+}
+
+// Whether an edge has a coefficient that is not zero: few of a fine level have.
+inline bool HasDetail(const QuantizedLevel& quantized, uint32_t edge) {
+  return quantized.tangential[size_t{2} * edge] != 0 || quantized.tangential[size_t{2} * edge + 1] != 0 || quantized.normal[edge] != 0;
+}
+
+// The dequantized detail of an edge, in its local frame.
+inline Vec3f LocalDetail(const LevelSteps& steps, const QuantizedLevel& quantized, uint32_t edge) {
+  return {Dequantize(quantized.tangential[size_t{2} * edge], steps.tangential_step, steps.tangential_bias),
+          Dequantize(quantized.tangential[size_t{2} * edge + 1], steps.tangential_step, steps.tangential_bias),
+          Dequantize(quantized.normal[edge], steps.normal_step, steps.normal_bias)};
 }
 
 }  // namespace lacerta

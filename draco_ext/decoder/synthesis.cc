@@ -17,14 +17,9 @@ std::vector<EdgeOffset> Details(const Topology& coarse, const LevelSteps& steps,
                                 Span<const Vec3f> midpoints, Span<const Vec3f> frame_normals) {
   std::vector<EdgeOffset> details;
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-    const int32_t q1 = quantized.tangential[size_t{2} * e], q2 = quantized.tangential[size_t{2} * e + 1];
-    const int32_t qn = quantized.normal[e];
-    if ((q1 == 0 && q2 == 0 && qn == 0) || coarse.is_copy(e)) continue;  // most of a fine level: no frame needed
-    const Vec3f detail = {Dequantize(q1, steps.tangential_step, steps.tangential_bias),
-                          Dequantize(q2, steps.tangential_step, steps.tangential_bias),
-                          Dequantize(qn, steps.normal_step, steps.normal_bias)};
+    if (!HasDetail(quantized, e) || coarse.is_copy(e)) continue;  // most of a fine level: no frame needed
     const LocalFrame frame = frame_normals.empty() ? LocalFrameAt(coarse, positions, midpoints, e) : FrameWithNormal(coarse, positions, e, frame_normals[e]);
-    details.emplace_back(e, frame.ToWorld(detail));
+    details.emplace_back(e, frame.ToWorld(LocalDetail(steps, quantized, e)));
   }
   return details;
 }

@@ -31,14 +31,7 @@ void AppendLevel(const Topology& coarse, const LevelPrediction& predicted, const
   positions->reserve(size_t{coarse.num_vertices} + coarse.num_edges());
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     Vec3f position = predicted.midpoints[e] + predicted.OffsetOf(e);
-    if (!steps.is_silent()) {
-      const int32_t q1 = quantized.tangential[size_t{2} * e], q2 = quantized.tangential[size_t{2} * e + 1], qn = quantized.normal[e];
-      if (q1 != 0 || q2 != 0 || qn != 0) {  // few of a fine level
-        position += predicted.frames[e].ToWorld({Dequantize(q1, steps.tangential_step, steps.tangential_bias),
-                                                 Dequantize(q2, steps.tangential_step, steps.tangential_bias),
-                                                 Dequantize(qn, steps.normal_step, steps.normal_bias)});
-      }
-    }
+    if (!steps.is_silent() && HasDetail(quantized, e)) position += predicted.frames[e].ToWorld(LocalDetail(steps, quantized, e));
     positions->push_back(position);
   }
   for (uint32_t e = 0; e < coarse.num_edges() && !coarse.master.empty(); ++e) {
