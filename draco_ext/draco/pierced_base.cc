@@ -10,7 +10,6 @@
 #include "remesh/base_parts.h"
 #include "remesh/piercing.h"
 #include "remesh/reversal.h"
-#include "remesh/surface_fit.h"
 
 namespace lacerta {
 
@@ -54,12 +53,6 @@ NormalMesh PiercedBase::Remesh() const {
   NormalMesh result = pierced_.mesh();
   result.mesh.base_triangles = base_.mesh.triangles;
   result.mesh.tags.still = is_still_;
-  return result;
-}
-
-NormalMesh PiercedBase::Fitted() const {
-  NormalMesh result = Remesh();
-  FitToInput(surface_, SurfaceFitOptions(), &result);
   return result;
 }
 

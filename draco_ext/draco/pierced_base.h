@@ -31,7 +31,6 @@ class PiercedBase {
 
   // The remesh over base().mesh, in its order: its vertices are points of the input.
   NormalMesh Remesh() const;
-  NormalMesh Fitted() const;  // to the input (remesh/surface_fit.h)
   // The same without the still part.
   const NormalMesh& refined() const { return pierced_.mesh(); }
 

@@ -62,7 +62,7 @@ TEST(NormalMeshCandidate, WithMoreLevelsGoesOnFromTheOneWithFewer) {
     pierced = PierceUnreversed(refinable, 16, 3, BaseCoding::kStock, std::move(pierced)).value();
     EXPECT_GE(pierced->num_vertices(), num_vertices_before);
     EXPECT_LE(pierced->num_vertices(), 16u + 8);
-    const NormalMeshCandidate more(pierced->base(), pierced->Fitted());
+    const NormalMeshCandidate more = testing::FittedCandidate(*pierced, surface);
     const NormalMeshCandidate anew = testing::MakeCandidate(refinable, 16, 3);
     EXPECT_EQ(more.num_levels(), 3);
     EXPECT_LT(FindReversed(surface, more.normal_mesh()).share, 1e-3);
