@@ -9,6 +9,7 @@
 
 #include "common/subdivision.h"
 #include "geometry/triangle_tree.h"
+#include "geometry/vertex_area_vectors.h"
 #include "remesh/edge_corners.h"
 #include "remesh/manifold.h"
 
@@ -245,10 +246,7 @@ class Mender {
     return is_stray;
   }
 
-  double Area(const Triangle& t) const {
-    const auto at = [&](uint32_t v) { return Vec3Cast<double>(At(v)); };
-    return Norm(Cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]))) / 2;
-  }
+  double Area(const Triangle& t) const { return Norm(AreaVector(whole_.mesh.positions, t)) / 2; }
 
   // Integral of the squared distance from a triangle to a mesh, by its middle and those of its edges; infinite beyond what is allowed anywhere.
   double ErrorTo(const TriangleTree& tree, const Triangle& t) const {
