@@ -25,6 +25,14 @@ double ErrorUnit(const MeshAttribute& attribute, double texture_size) {
   return is_direction && attribute.components >= 3 ? kRadiansPerDegree : 1;
 }
 
+double LimitWeight(double weight) { return std::clamp(weight, 1e-9, 1e3); }
+
+// Whatever is allowed, the shape has to be kept as far as attributes are compared at closest points.
+double ShapeTarget(const SurfaceErrorMeter& meter, const ErrorTargets& targets) {
+  constexpr double kFarthest = 1e-3;
+  return std::min(targets.distance, kFarthest * meter.diagonal());
+}
+
 struct Trial {
   AttributedMesh mesh;
   SurfaceErrors errors;
@@ -111,24 +119,13 @@ class Search {
     return trial;
   }
 
-  // Costs of collapses are sums over the area, targets means over the part of it that has the attribute.
-  std::vector<double> FirstWeights() const {
-    const std::vector<double> shares = AttributeShares(original_);
-    std::vector<double> weights;
-    for (size_t a = 0; a < original_.attributes.size(); ++a) {
-      const double allowed = targets_.attributes[a] * ErrorUnit(original_.attributes[a], meter_.texture_size());
-      weights.push_back(LimitWeight(ShapeTarget() / meter_.diagonal() / allowed / std::sqrt(shares[a])));
-    }
-    return weights;
-  }
-
   // More for what is nearer to its target than the positions, less for what is farther, at the size that is nearest to the targets.
   void Reweight(const Found& found, std::vector<double>* weights) const {
     constexpr double kLeast = 0.05;
     const auto off = [&](const SurfaceErrors& errors) { return std::fabs(std::log(std::max(WorstRatio(errors, targets_), 1e-9))); };
     const SurfaceErrors& met = found.smallest->errors;
     const SurfaceErrors& nearest = found.missed && off(*found.missed) < off(met) ? *found.missed : met;
-    const double position = std::max(nearest.distance / ShapeTarget(), kLeast);
+    const double position = std::max(nearest.distance / ShapeTarget(meter_, targets_), kLeast);
     for (size_t a = 0; a < weights->size(); ++a) {
       const double own = std::max(AttributeRatio(nearest, targets_, a), kLeast);
       (*weights)[a] = LimitWeight((*weights)[a] * own / position);
@@ -136,14 +133,6 @@ class Search {
   }
 
  private:
-  static double LimitWeight(double weight) { return std::clamp(weight, 1e-9, 1e3); }
-
-  // Whatever is allowed, the shape has to be kept as far as attributes are compared at closest points.
-  double ShapeTarget() const {
-    constexpr double kFarthest = 1e-3;
-    return std::min(targets_.distance, kFarthest * meter_.diagonal());
-  }
-
   const AttributedMesh& original_;
   const SurfaceErrorMeter& meter_;
   const ErrorTargets& targets_;
@@ -166,12 +155,23 @@ Status CheckTargets(const AttributedMesh& mesh, const ErrorTargets& targets) {
 
 }  // namespace
 
+// Costs of collapses are sums over the area, targets means over the part of it that has the attribute.
+std::vector<double> WeightsOfTargets(const AttributedMesh& mesh, const SurfaceErrorMeter& meter, const ErrorTargets& targets) {
+  const std::vector<double> shares = AttributeShares(mesh);
+  std::vector<double> weights;
+  for (size_t a = 0; a < mesh.attributes.size(); ++a) {
+    const double allowed = targets.attributes[a] * ErrorUnit(mesh.attributes[a], meter.texture_size());
+    weights.push_back(LimitWeight(ShapeTarget(meter, targets) / meter.diagonal() / allowed / std::sqrt(shares[a])));
+  }
+  return weights;
+}
+
 StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
                                              const SimplifyToErrorsOptions& options) {
   LACERTA_RETURN_IF_ERROR(CheckTargets(original, targets));
   const Search search(original, meter, targets, options);
   constexpr double kWorthwhile = 0.98;  // of the size, for another weighting
-  std::vector<double> weights = search.FirstWeights();
+  std::vector<double> weights = WeightsOfTargets(original, meter, targets);
   std::optional<Trial> best;
   std::unique_ptr<const AttributedSimplification> best_sequence;
   const auto all = static_cast<double>(original.surface.triangles.size());

@@ -26,8 +26,12 @@ struct SimplifiedSurface {
   bool meets_targets = true;  // false only where even the input's own triangles do not, by the precision of the measure
 };
 
-// The smallest mesh found of those that AttributedSimplification makes of the original and that meet the targets. meter: of the
-// original. The weight of each attribute against positions is what the targets say, then changed by which of them limits the size.
+// For each attribute the weight against positions, as for AttributedSimplification, that the targets tell.
+std::vector<double> WeightsOfTargets(const AttributedMesh& mesh, const SurfaceErrorMeter& meter, const ErrorTargets& targets);
+
+// The smallest mesh found of those that AttributedSimplification makes of the original and that meet the targets. meter: of the original, or
+// of what that is the AttributedProxy of. The weight of each attribute against positions is what the targets say, then changed by which of
+// them limits the size.
 StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
                                              const SimplifyToErrorsOptions& options = {});
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "geometry/close_seams.h"
+#include "remesh/attributed_proxy.h"
 
 namespace lacerta {
 namespace {
@@ -47,6 +48,13 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
   // Errors are measured against what came in.
   CloseUnseenSeams(targets_.attributes, static_cast<double>(texel_side), &original_);
   leaves_out_ = HasOtherAttributes(primitives_, skin_, custom_);
+}
+
+void FamilyMeter::UseProxy() {
+  if (!status_.ok()) return;
+  StatusOr<std::optional<AttributedMesh>> proxy = AttributedProxy(original_, *meter_, targets_);
+  status_ = proxy.status();
+  if (proxy.ok()) proxy_ = std::move(proxy).value();
 }
 
 StatusOr<SurfaceErrors> FamilyMeter::Measure(const std::vector<const Primitive*>& stored) const {

@@ -37,10 +37,16 @@ class FamilyMeter {
 
   // What is to be stored: without what ToAttributedMesh leaves out, and without seams that nobody sees (CloseSeams).
   const AttributedMesh& original() const { return original_; }
+  // What is simplified and remeshed: the original, or what stands for it after UseProxy.
+  const AttributedMesh& simplifiable() const { return proxy_ ? *proxy_ : original_; }
+  bool has_proxy() const { return proxy_.has_value(); }
   const SurfaceErrorMeter& meter() const { return *meter_; }
   const ErrorTargets& targets() const { return targets_; }
   bool leaves_out() const { return leaves_out_; }  // joints without a skin, application attributes that stay exact
   const std::set<std::string>& custom() const { return custom_; }  // application attributes that do not
+
+  // Lets the original's AttributedProxy stand for it, where it has one.
+  void UseProxy();
 
   // The targets with bounds `everywhere` (as in ErrorTargets; may be empty) besides those that they have.
   ErrorTargets TargetsWith(const std::vector<double>& everywhere) const;
@@ -69,6 +75,7 @@ class FamilyMeter {
   const Skin* const skin_;
   Status status_;
   AttributedMesh original_;
+  std::optional<AttributedMesh> proxy_;
   std::optional<SurfaceErrorMeter> meter_;
   std::vector<SurfaceDistanceMeter> poses_;  // of the skin's
   ErrorTargets targets_;

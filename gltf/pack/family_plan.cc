@@ -82,32 +82,37 @@ void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plan
   if (is_stream) least = std::min(least, (*plans)[0].progressive->stream.size() + kDracoJsonBytes + kProgressiveJsonBytes);
   std::vector<double> everywhere;
   const StatusOr<std::optional<Skin>> skin = context.FindSkin();
-  const FamilyMeter meter(context.Primitives(), context.Error(), context.options->attributes, context.scene->texel_side,
-                          context.Scale(), skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
+  FamilyMeter meter(context.Primitives(), context.Error(), context.options->attributes, context.scene->texel_side,
+                    context.Scale(), skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
+  const bool simplifies = context.options->simplify && !is_stream;  // streams have tried a simplified surface themselves
+  if (simplifies && !context.HasTargets()) meter.UseProxy();
   const uint64_t most_bytes = is_stream ? least : std::numeric_limits<uint64_t>::max();
-  StatusOr<FamilyCandidate> chosen = WithAllVertices(context, meter, most_bytes, &everywhere);
-  std::string against = chosen.ok() ? "" : chosen.status().message();
-  if (chosen.ok() && chosen.value().bytes >= least) {
-    against = "compressed it would be larger (" + std::to_string(chosen.value().bytes) + " bytes with their description)";
-    chosen = Unsupported(against);
-  }
+  const auto all_vertices = [&]() -> StatusOr<FamilyCandidate> {
+    LACERTA_ASSIGN_OR_RETURN(FamilyCandidate candidate, WithAllVertices(context, meter, most_bytes, &everywhere));
+    if (candidate.bytes < least) return candidate;
+    return Unsupported("compressed it would be larger (" + std::to_string(candidate.bytes) + " bytes with their description)");
+  };
+  // A proxy has half the triangles or fewer, and what comes of it fewer still: all vertices are what is left where nothing does.
+  const bool all_last = meter.has_proxy() && !context.options->attributes.normals_everywhere;
+  StatusOr<FamilyCandidate> chosen = all_last ? Unsupported("") : all_vertices();
   if (chosen.ok()) least = chosen.value().bytes;
   std::string simplified_reason;
-  if (context.options->simplify && !is_stream) {  // streams have tried a simplified surface themselves
+  if (simplifies) {
     StatusOr<FamilyCandidate> simplified =
         skin.ok() ? Simplified(context, meter, everywhere) : StatusOr<FamilyCandidate>(skin.status());
     if (simplified.ok() && simplified.value().bytes < least) {
       chosen = std::move(simplified);
-      least = chosen.value().bytes;
     } else {
       simplified_reason = simplified.ok() ? "simplified it would be larger" : "not simplified: " + simplified.status().message();
     }
   }
+  if (all_last && !chosen.ok()) chosen = all_vertices();
+  if (chosen.ok()) least = chosen.value().bytes;
   if (!is_stream && PlanStream(context, meter, least, plans)) return;
   for (size_t m = 0; m < plans->size(); ++m) {
     PrimitivePlan& plan = (*plans)[m];
     if (!chosen.ok()) {
-      if (!is_stream) AddReason(against, &plan.report);
+      if (!is_stream) AddReason(chosen.status().message(), &plan.report);
       continue;
     }
     DracoCandidate& candidate = chosen.value().members[m];

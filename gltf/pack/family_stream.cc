@@ -143,6 +143,10 @@ StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, si
   LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original,
                            PlainNames(weighted ? std::move(weighted->original) : family.original()));
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(original, family.meter().texture_size()));
+  std::optional<AttributedMesh> proxy;
+  if (!weighted && family.has_proxy()) {
+    LACERTA_ASSIGN_OR_RETURN(proxy, PlainNames(family.simplifiable()));
+  }
   AttributedSearchOptions search;
   search.effort = effort;
   search.most_bytes = most_bytes;
@@ -161,7 +165,7 @@ StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, si
   }
   LACERTA_ASSIGN_OR_RETURN(
       const AttributedTrial trial,
-      SmallestAttributedStream(original, meter, weighted ? weighted->targets : family.targets(), search));
+      SmallestAttributedStream(proxy ? *proxy : original, meter, weighted ? weighted->targets : family.targets(), search));
   return ToFamilyStream(trial, meter, family, weighted, morphs);
 }
 

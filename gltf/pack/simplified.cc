@@ -105,7 +105,7 @@ StatusOr<SimplifiedFamily> SimplifyInPoses(const FamilyMeter& meter, ErrorTarget
   const double wanted = targets.attributes[poses];
   SimplifiedFamily best;
   for (int i = 0; i < kMostTries; ++i) {
-    LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets, options));
+    LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.simplifiable(), meter.meter(), targets, options));
     if (!simplified.meets_targets) break;
     const SkinTransfer::ByVertex by_vertex = transfer.Transfer(&simplified.mesh);
     LACERTA_ASSIGN_OR_RETURN(std::vector<Primitive> primitives, Split(simplified.mesh, meter, by_vertex));
@@ -142,14 +142,14 @@ StatusOr<SimplifiedFamily> SimplifyPrimitives(const FamilyMeter& meter, const st
   for (double& target : targets.attributes) target *= kShare;
   for (double& target : targets.everywhere) target *= kShare;
   if (meter.skin() != nullptr) return SimplifyInPoses(meter, std::move(targets));
-  LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.original(), meter.meter(), targets));
+  LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.simplifiable(), meter.meter(), targets));
   // Where attributes decide, a shape kept closer costs nothing, and collapses that spare it spare the attributes.
   constexpr double kIdle = 0.5, kRoom = 1.1;  // of the distance allowed; over what was taken of it
   constexpr double kLoose = 69.9;             // dB: for finer targets a second search is seldom worth its time
   const bool is_loose = Psnr(meter.error(), meter.meter().diagonal()) < kLoose;
   if (simplified.meets_targets && is_loose && simplified.errors.distance < kIdle * targets.distance) {
     targets.distance = kRoom * simplified.errors.distance;
-    StatusOr<SimplifiedSurface> closer = SimplifyToErrors(meter.original(), meter.meter(), targets);
+    StatusOr<SimplifiedSurface> closer = SimplifyToErrors(meter.simplifiable(), meter.meter(), targets);
     const bool is_better = closer.ok() && closer.value().meets_targets &&
                            closer.value().mesh.surface.triangles.size() < simplified.mesh.surface.triangles.size();
     if (is_better) simplified = std::move(closer).value();

@@ -74,6 +74,24 @@ TEST(Simplified, HalvesStayJoinedAndMeetTheErrors) {
   }
 }
 
+TEST(Simplified, DenseSurfacesAreHeldToThemselvesNotToTheirProxy) {
+  const TriangleMesh ball = testing::WavySphere(230, 450);
+  const Primitive upper = Half(ball, true);
+  const Primitive lower = Half(ball, false);
+  const double error = DistanceOfPsnr(70.0, BoundingBoxDiagonal(ball));
+  FamilyMeter meter({&upper, &lower}, error, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
+  EXPECT_EQ(meter.simplifiable().surface.triangles.size(), meter.original().surface.triangles.size());
+  meter.UseProxy();
+  ASSERT_TRUE(meter.has_proxy());
+  EXPECT_LE(meter.simplifiable().surface.triangles.size(), 100'000u);
+  EXPECT_GE(meter.simplifiable().surface.triangles.size(), 99'900u);
+  const auto family = SimplifyFamily(meter);
+  ASSERT_TRUE(family.ok()) << family.status().message();
+  EXPECT_LE(family.value().error, error);
+  EXPECT_GT(family.value().error, error / 4);
+  EXPECT_EQ(Border(family.value().members[0].decoded), Border(family.value().members[1].decoded));
+}
+
 // Waves of an amplitude of 50 over the surface, and how far `family` has them off, at the vertices that it keeps.
 float HeatAt(const Vec3f& p) { return 50.0f * std::sin(4.0f * p.x) * std::cos(3.0f * p.y) + p.z; }
 

@@ -1,0 +1,31 @@
+// A surface of fewer triangles that stands for a dense one with attributes where that is simplified and remeshed: those take time and memory
+// with every triangle, and several runs. Errors are measured to the original itself.
+#ifndef LACERTA_REMESH_ATTRIBUTED_PROXY_H_
+#define LACERTA_REMESH_ATTRIBUTED_PROXY_H_
+
+#include <cstdint>
+#include <optional>
+
+#include "lacerta/attributed_mesh.h"
+#include "lacerta/status.h"
+#include "remesh/surface_errors.h"
+
+namespace lacerta {
+
+struct AttributedProxyOptions {
+  uint32_t fewest_triangles = 100'000;
+  double share = 0.15;            // of the distance allowed, at most
+  double attribute_share = 0.25;  // of every attribute's error and of the turned area allowed, at most
+};
+
+// The original, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them.
+//   original  one that CheckAttributedMesh accepts
+//   meter     of the original
+//   targets   of what it stands for; `everywhere` is left alone
+// Fails as SurfaceErrorMeter::Measure.
+StatusOr<std::optional<AttributedMesh>> AttributedProxy(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
+                                                        const AttributedProxyOptions& options = {});
+
+}  // namespace lacerta
+
+#endif  // LACERTA_REMESH_ATTRIBUTED_PROXY_H_

@@ -1,0 +1,55 @@
+#include "remesh/attributed_proxy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "shapes/attributed_shapes.h"
+
+namespace lacerta {
+namespace {
+
+constexpr double kAny = std::numeric_limits<double>::infinity();
+
+class AttributedProxyTest : public ::testing::Test {
+ protected:
+  std::optional<AttributedMesh> ProxyFor(const ErrorTargets& targets, const AttributedProxyOptions& options) const {
+    auto proxy = AttributedProxy(mesh_, meter_, targets, options);
+    EXPECT_TRUE(proxy.ok()) << proxy.status().message();
+    return std::move(proxy).value();
+  }
+
+  const AttributedMesh mesh_ = WeldSoups({shapes::TexturedGrid(100, 100, 0.3f)}).value();  // 20,000 triangles
+  const SurfaceErrorMeter meter_ = SurfaceErrorMeter::Create(mesh_).value();
+};
+
+TEST_F(AttributedProxyTest, HasAsFewTrianglesAsItsSharesOfTheErrorsAllow) {
+  AttributedProxyOptions options;
+  options.fewest_triangles = 500;
+  for (const ErrorTargets& targets : {ErrorTargets{1e-3, {kAny, kAny}}, {kAny, {0.3, kAny}}, {kAny, {kAny, 2}}, {1e-3, {0.3, 2}}}) {
+    const std::optional<AttributedMesh> proxy = ProxyFor(targets, options);
+    ASSERT_TRUE(proxy.has_value());
+    const SurfaceErrors errors = meter_.Measure(*proxy, 100'000).value();
+    const double worst = std::max({errors.distance / targets.distance / options.share, errors.attributes[0].rms_99 / targets.attributes[0] / options.attribute_share,
+                                   errors.attributes[1].rms_99 / targets.attributes[1] / options.attribute_share});
+    EXPECT_LE(worst, 1.05);
+    EXPECT_GE(worst, 0.2);  // half the triangles would have been taken otherwise
+    EXPECT_LE(proxy->surface.triangles.size(), mesh_.surface.triangles.size() / 2);
+    EXPECT_GE(proxy->surface.triangles.size(), 490u);
+  }
+}
+
+TEST_F(AttributedProxyTest, IsNotThereForSmallInputsAndFineTargets) {
+  const ErrorTargets loose{1, {100, 90}}, fine{1e-3, {1e-4, kAny}};
+  EXPECT_FALSE(ProxyFor(loose, {}).has_value());
+  AttributedProxyOptions options;
+  options.fewest_triangles = 500;
+  const std::optional<AttributedMesh> proxy = ProxyFor(loose, options);
+  ASSERT_TRUE(proxy.has_value());
+  EXPECT_LE(proxy->surface.triangles.size(), 500u);
+  EXPECT_FALSE(ProxyFor(fine, options).has_value());
+}
+
+}  // namespace
+}  // namespace lacerta
