@@ -88,7 +88,7 @@ class FamilyRounder {
     constexpr double kWorthwhile = 0.01;  // of the bytes, for another measure
     std::optional<Trial> best;
     for (int round = 0; round < kMostRounds; ++round) {
-      LACERTA_ASSIGN_OR_RETURN(Trial* trial, Smallest());
+      LACERTA_ASSIGN_OR_RETURN(Trial* trial, Smallest(most_bytes));
       // What is decoded has all that was asked for and nothing smaller is expected: done.
       if (trial == nullptr || trial->is_measured) break;
       if (static_cast<double>(trial->bytes) > kHopeless * static_cast<double>(most_bytes)) {
@@ -129,8 +129,9 @@ class FamilyRounder {
   // own target.
   double PoseRoom() const { return poses_.has_value() ? (1.0 - Square(own_poses_)) / correction_.poses : kInfinity; }
 
-  // The smallest of what is expected to meet the targets; null where nothing is.
-  StatusOr<Trial*> Smallest() {
+  // The smallest of what is expected to meet the targets; null where nothing is. One that takes far more than most_bytes ends the search.
+  StatusOr<Trial*> Smallest(uint64_t most_bytes) {
+    constexpr double kFar = 3;  // times as many: other precisions do not save so much
     Trial* smallest = nullptr;
     for (const Levels& levels : Candidates()) {
       auto known = trials_.find(levels);
@@ -139,6 +140,7 @@ class FamilyRounder {
         known = trials_.emplace(levels, std::move(trial)).first;
       }
       if (smallest == nullptr || known->second.bytes < smallest->bytes) smallest = &known->second;
+      if (static_cast<double>(smallest->bytes) > kFar * static_cast<double>(most_bytes)) break;
     }
     return smallest;
   }
