@@ -27,6 +27,7 @@ StatusOr<std::optional<AttributedMesh>> AttributedProxy(const AttributedMesh& or
   const AttributedSimplification sequence(original, WeightsOfTargets(original, meter, targets));
   for (uint64_t n = options.fewest_triangles; n <= most_triangles; n *= 2) {
     AttributedMesh proxy = sequence.MeshWith(static_cast<uint32_t>(n));
+    if (proxy.surface.triangles.size() > most_triangles) break;  // its seams leave no fewer
     LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, meter.Measure(proxy, kSamples));
     if (WorstRatio(errors, shares) <= 1) return std::optional<AttributedMesh>(std::move(proxy));
   }

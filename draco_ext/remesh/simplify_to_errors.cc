@@ -42,7 +42,7 @@ struct Trial {
 class Search {
  public:
   Search(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets, const SimplifyToErrorsOptions& options)
-      : original_(original), meter_(meter), targets_(targets), options_(options), num_fit_samples_(std::clamp<size_t>(original.surface.triangles.size(), 10'000, 100'000)),
+      : meter_(meter), targets_(targets), options_(options), num_fit_samples_(std::clamp<size_t>(original.surface.triangles.size(), 10'000, 100'000)),
         fit_target_(original.surface, num_fit_samples_), surface_(original) {}
 
   // The surface of that size, moved to where it is closest to the original.
@@ -133,7 +133,6 @@ class Search {
   }
 
  private:
-  const AttributedMesh& original_;
   const SurfaceErrorMeter& meter_;
   const ErrorTargets& targets_;
   const SimplifyToErrorsOptions& options_;

@@ -51,5 +51,15 @@ TEST_F(AttributedProxyTest, IsNotThereForSmallInputsAndFineTargets) {
   EXPECT_FALSE(ProxyFor(fine, options).has_value());
 }
 
+TEST(AttributedProxy, IsNotThereWhereSeamsLeaveMoreThanHalf) {
+  const AttributedMesh mesh = WeldSoups({shapes::Unwelded(shapes::TexturedGrid(20, 20), 0.2f)}).value();  // every edge is a seam
+  const SurfaceErrorMeter meter = SurfaceErrorMeter::Create(mesh).value();
+  AttributedProxyOptions options;
+  options.fewest_triangles = 100;
+  const auto proxy = AttributedProxy(mesh, meter, {kAny, {kAny, kAny}}, options);
+  ASSERT_TRUE(proxy.ok()) << proxy.status().message();
+  EXPECT_FALSE(proxy.value().has_value());
+}
+
 }  // namespace
 }  // namespace lacerta
