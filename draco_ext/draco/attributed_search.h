@@ -23,8 +23,9 @@ struct AttributedSearchOptions {
 };
 
 // Walks over base sizes, from a usual one for as long as streams get smaller, and at each over precisions; ends early where most_bytes
-// seem out of reach. meter: of `mesh`, or of what it is the AttributedProxy of, with the texture size that texels in `targets` refer to. kUnsupported, with the reason, where the surface cannot be remeshed with its seams, where no base leads to
-// the targets, and where most_bytes are not enough; all that is returned meets the targets, `turned` among them where it is bounded.
+// seem out of reach. meter: of `mesh`, or of what it is the AttributedProxy of, with the texture size that texels in `targets` refer to.
+// kUnsupported, with the reason, where the surface cannot be remeshed with its seams, where no base leads to the targets, and where
+// most_bytes are not enough; all that is returned meets the targets, `turned` among them where it is bounded.
 StatusOr<AttributedTrial> SmallestAttributedStream(const AttributedMesh& mesh, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
                                                    const AttributedSearchOptions& options = {});
 

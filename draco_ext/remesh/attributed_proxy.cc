@@ -1,7 +1,5 @@
 #include "remesh/attributed_proxy.h"
 
-#include <utility>
-
 #include "remesh/attributed_simplify.h"
 #include "remesh/simplify_to_errors.h"
 
@@ -18,20 +16,20 @@ ErrorTargets SharesOf(const ErrorTargets& targets, const AttributedProxyOptions&
 
 }  // namespace
 
-StatusOr<std::optional<AttributedMesh>> AttributedProxy(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
-                                                        const AttributedProxyOptions& options) {
+std::optional<AttributedMesh> AttributedProxy(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
+                                              const AttributedProxyOptions& options) {
   constexpr uint64_t kSamples = 50'000;
   const size_t most_triangles = original.surface.triangles.size() / 2;
-  if (options.fewest_triangles > most_triangles) return std::optional<AttributedMesh>();
+  if (options.fewest_triangles > most_triangles) return std::nullopt;
   const ErrorTargets shares = SharesOf(targets, options);
   const AttributedSimplification sequence(original, WeightsOfTargets(original, meter, targets));
   for (uint64_t n = options.fewest_triangles; n <= most_triangles; n *= 2) {
     AttributedMesh proxy = sequence.MeshWith(static_cast<uint32_t>(n));
     if (proxy.surface.triangles.size() > most_triangles) break;  // its seams leave no fewer
-    LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, meter.Measure(proxy, kSamples));
-    if (WorstRatio(errors, shares) <= 1) return std::optional<AttributedMesh>(std::move(proxy));
+    const StatusOr<SurfaceErrors> errors = meter.Measure(proxy, kSamples);
+    if (errors.ok() && WorstRatio(errors.value(), shares) <= 1) return proxy;
   }
-  return std::optional<AttributedMesh>();
+  return std::nullopt;
 }
 
 }  // namespace lacerta

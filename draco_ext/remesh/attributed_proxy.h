@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "lacerta/attributed_mesh.h"
-#include "lacerta/status.h"
 #include "remesh/surface_errors.h"
 
 namespace lacerta {
@@ -18,13 +17,13 @@ struct AttributedProxyOptions {
   double attribute_share = 0.25;  // of every attribute's error and of the turned area allowed, at most
 };
 
-// The original, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them.
+// The original, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them. One that cannot
+// be measured, as where a group has lost its area, does not count.
 //   original  one that CheckAttributedMesh accepts
 //   meter     of the original
 //   targets   of what it stands for; `everywhere` is left alone
-// Fails as SurfaceErrorMeter::Measure.
-StatusOr<std::optional<AttributedMesh>> AttributedProxy(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
-                                                        const AttributedProxyOptions& options = {});
+std::optional<AttributedMesh> AttributedProxy(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
+                                              const AttributedProxyOptions& options = {});
 
 }  // namespace lacerta
 

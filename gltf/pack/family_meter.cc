@@ -51,10 +51,7 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
 }
 
 void FamilyMeter::UseProxy() {
-  if (!status_.ok()) return;
-  StatusOr<std::optional<AttributedMesh>> proxy = AttributedProxy(original_, *meter_, targets_);
-  status_ = proxy.status();
-  if (proxy.ok()) proxy_ = std::move(proxy).value();
+  if (status_.ok()) proxy_ = AttributedProxy(original_, *meter_, targets_);
 }
 
 StatusOr<SurfaceErrors> FamilyMeter::Measure(const std::vector<const Primitive*>& stored) const {

@@ -143,7 +143,7 @@ StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, si
   LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original,
                            PlainNames(weighted ? std::move(weighted->original) : family.original()));
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(original, family.meter().texture_size()));
-  std::optional<AttributedMesh> proxy;
+  std::optional<AttributedMesh> proxy;  // of the family's own surface, which has no joints' weights
   if (!weighted && family.has_proxy()) {
     LACERTA_ASSIGN_OR_RETURN(proxy, PlainNames(family.simplifiable()));
   }
