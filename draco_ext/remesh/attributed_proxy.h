@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "lacerta/attributed_mesh.h"
+#include "lacerta/status.h"
 #include "remesh/surface_errors.h"
 
 namespace lacerta {
@@ -18,12 +19,13 @@ struct AttributedProxyOptions {
 };
 
 // The original, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them. One that cannot
-// be measured, as where a group has lost its area, does not count.
+// be measured, as where a group has lost its area, does not count. Fails with kUnsupported, with the reason, where simplification is of no use at
+// all: seams keep more than half of the triangles, or errors at the largest size tried tell that nearly all are needed.
 //   original  one that CheckAttributedMesh accepts
 //   meter     of the original
 //   targets   of what it stands for; `everywhere` is left alone
-std::optional<AttributedMesh> AttributedProxy(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
-                                              const AttributedProxyOptions& options = {});
+StatusOr<std::optional<AttributedMesh>> AttributedProxy(const AttributedMesh& original, const SurfaceErrorMeter& meter,
+                                                        const ErrorTargets& targets, const AttributedProxyOptions& options = {});
 
 }  // namespace lacerta
 

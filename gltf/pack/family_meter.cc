@@ -50,8 +50,10 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
   leaves_out_ = HasOtherAttributes(primitives_, skin_, custom_);
 }
 
-void FamilyMeter::UseProxy() {
-  if (status_.ok()) proxy_ = AttributedProxy(original_, *meter_, targets_);
+Status FamilyMeter::UseProxy() {
+  if (!status_.ok()) return Status();
+  LACERTA_ASSIGN_OR_RETURN(proxy_, AttributedProxy(original_, *meter_, targets_));
+  return Status();
 }
 
 StatusOr<SurfaceErrors> FamilyMeter::Measure(const std::vector<const Primitive*>& stored) const {

@@ -45,8 +45,9 @@ class FamilyMeter {
   bool leaves_out() const { return leaves_out_; }  // joints without a skin, application attributes that stay exact
   const std::set<std::string>& custom() const { return custom_; }  // application attributes that do not
 
-  // Lets the original's AttributedProxy stand for it, where it has one.
-  void UseProxy();
+  // Lets the original's AttributedProxy stand for it, where it has one. Fails, with the reason, where it tells that neither a simplified
+  // nor a remeshed surface is of use.
+  Status UseProxy();
 
   // The targets with bounds `everywhere` (as in ErrorTargets; may be empty) besides those that they have.
   ErrorTargets TargetsWith(const std::vector<double>& everywhere) const;

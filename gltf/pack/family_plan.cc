@@ -85,7 +85,7 @@ void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plan
   FamilyMeter meter(context.Primitives(), context.Error(), context.options->attributes, context.scene->texel_side,
                     context.Scale(), skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
   const bool simplifies = context.options->simplify && !is_stream;  // streams have tried a simplified surface themselves
-  if (simplifies && !context.HasTargets()) meter.UseProxy();
+  const Status coarser = simplifies && !context.HasTargets() ? meter.UseProxy() : Status();
   const uint64_t most_bytes = is_stream ? least : std::numeric_limits<uint64_t>::max();
   const auto all_vertices = [&]() -> StatusOr<FamilyCandidate> {
     LACERTA_ASSIGN_OR_RETURN(FamilyCandidate candidate, WithAllVertices(context, meter, most_bytes, &everywhere));
@@ -98,8 +98,9 @@ void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plan
   if (chosen.ok()) least = chosen.value().bytes;
   std::string simplified_reason;
   if (simplifies) {
-    StatusOr<FamilyCandidate> simplified =
-        skin.ok() ? Simplified(context, meter, everywhere) : StatusOr<FamilyCandidate>(skin.status());
+    StatusOr<FamilyCandidate> simplified = !skin.ok()      ? StatusOr<FamilyCandidate>(skin.status())
+                                           : !coarser.ok() ? StatusOr<FamilyCandidate>(coarser)
+                                                           : Simplified(context, meter, everywhere);
     if (simplified.ok() && simplified.value().bytes < least) {
       chosen = std::move(simplified);
     } else {
@@ -108,7 +109,8 @@ void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plan
   }
   if (all_last && !chosen.ok()) chosen = all_vertices();
   if (chosen.ok()) least = chosen.value().bytes;
-  if (!is_stream && PlanStream(context, meter, least, plans)) return;
+  const bool may_stream = coarser.ok() || context.options->encode.levels == LevelChoice::kAlways;
+  if (!is_stream && may_stream && PlanStream(context, meter, least, plans)) return;
   for (size_t m = 0; m < plans->size(); ++m) {
     PrimitivePlan& plan = (*plans)[m];
     if (!chosen.ok()) {

@@ -42,6 +42,9 @@ struct Correction {
 
 double Square(double x) { return x * x; }
 
+// How many levels finer a step is that is this many times smaller.
+int LevelsFiner(double factor) { return static_cast<int>(std::ceil(kLevelsPerBit * std::log2(factor))); }
+
 std::map<std::string, double> CustomTargets(const FamilyMeter& meter) {
   std::map<std::string, double> targets;
   if (!meter.status().ok()) return targets;
@@ -225,6 +228,18 @@ class FamilyRounder {
     if (!errors.ok()) return;
     Report(errors.value(), &trial->family);
     Correct(errors.value(), levels, forecast_.Positions(levels.positions));
+    const double exact = WorstExactRatio(errors.value());
+    if (exact > 1.0) least_positions_ = std::max(least_positions_, levels.positions + LevelsFiner(exact));
+  }
+
+  // What stays exact, integers of colors for one, slides along with rounded positions all the same.
+  double WorstExactRatio(const SurfaceErrors& errors) const {
+    double worst = 0.0;
+    for (size_t index = 0; index < errors.attributes.size(); ++index) {
+      const bool is_rounded = std::find(indices_.begin(), indices_.end(), index) != indices_.end() || poses_ == index;
+      if (!is_rounded) worst = std::max(worst, Ratio(errors, index));
+    }
+    return worst;
   }
 
   void SetAttribute(size_t a, int level, const RoundedPositions& positions, RoundedFamily* family) {
@@ -277,10 +292,9 @@ class FamilyRounder {
     };
     // Where the forecast is far off, a factor is of no use: it may be one of next to nothing. But errors are in proportion to the step.
     constexpr double kUnforeseen = 3, kNothing = 0.05;
-    const auto finer = [](double measured) { return static_cast<int>(std::ceil(kLevelsPerBit * std::log2(measured))); };
     const double distance = errors.distance / targets_.distance, expected_distance = positions.distance / targets_.distance;
     if (distance > std::max(1.0, kUnforeseen * expected_distance)) {  // flat surfaces shrink within their plane
-      least_positions_ = std::max(least_positions_, levels.positions + finer(distance));
+      least_positions_ = std::max(least_positions_, levels.positions + LevelsFiner(distance));
       return;
     }
     correction_.distance = corrected(distance, own_distance_, expected_distance);
@@ -298,7 +312,7 @@ class FamilyRounder {
       const double measured = Ratio(errors, *indices_[a]);
       // What finer rounding does not mend in one go is due to the positions.
       const bool is_first = least_attributes_[a] == 1 && measured > kUnforeseen * expected;
-      if (measured > std::max(1.0, kUnforeseen * rounded)) least_attributes_[a] = levels.attributes[a] + finer(measured);
+      if (measured > std::max(1.0, kUnforeseen * rounded)) least_attributes_[a] = levels.attributes[a] + LevelsFiner(measured);
       if (measured > 1.0 && (is_first || expected < kNothing)) continue;
       correction_.attributes[a] = corrected(measured, own_attributes_[a], expected);
     }

@@ -15,7 +15,7 @@ constexpr double kAny = std::numeric_limits<double>::infinity();
 class AttributedProxyTest : public ::testing::Test {
  protected:
   std::optional<AttributedMesh> ProxyFor(const ErrorTargets& targets, const AttributedProxyOptions& options) const {
-    return AttributedProxy(mesh_, meter_, targets, options);
+    return AttributedProxy(mesh_, meter_, targets, options).value();
   }
 
   const AttributedMesh mesh_ = WeldSoups({shapes::TexturedGrid(100, 100, 0.3f)}).value();  // 20,000 triangles
@@ -39,7 +39,7 @@ TEST_F(AttributedProxyTest, HasAsFewTrianglesAsItsSharesOfTheErrorsAllow) {
 }
 
 TEST_F(AttributedProxyTest, IsNotThereForSmallInputsAndFineTargets) {
-  const ErrorTargets loose{1, {100, 90}}, fine{1e-3, {1e-4, kAny}};
+  const ErrorTargets loose{1, {100, 90}}, fine{1e-3, {0.01, kAny}};
   EXPECT_FALSE(ProxyFor(loose, {}).has_value());
   AttributedProxyOptions options;
   options.fewest_triangles = 500;
@@ -49,12 +49,19 @@ TEST_F(AttributedProxyTest, IsNotThereForSmallInputsAndFineTargets) {
   EXPECT_FALSE(ProxyFor(fine, options).has_value());
 }
 
+TEST_F(AttributedProxyTest, SaysWhereNearlyAllTrianglesAreNeeded) {
+  AttributedProxyOptions options;
+  options.fewest_triangles = 500;
+  EXPECT_TRUE(AttributedProxy(mesh_, meter_, {1e-3, {0.01, kAny}}, options).ok());
+  EXPECT_EQ(AttributedProxy(mesh_, meter_, {1e-3, {1e-4, kAny}}, options).status().code(), StatusCode::kUnsupported);
+}
+
 TEST(AttributedProxy, IsNotThereWhereSeamsLeaveMoreThanHalf) {
   const AttributedMesh mesh = WeldSoups({shapes::Unwelded(shapes::TexturedGrid(20, 20), 0.2f)}).value();  // every edge is a seam
   const SurfaceErrorMeter meter = SurfaceErrorMeter::Create(mesh).value();
   AttributedProxyOptions options;
   options.fewest_triangles = 100;
-  EXPECT_FALSE(AttributedProxy(mesh, meter, {kAny, {kAny, kAny}}, options).has_value());
+  EXPECT_EQ(AttributedProxy(mesh, meter, {kAny, {kAny, kAny}}, options).status().code(), StatusCode::kUnsupported);
 }
 
 }  // namespace

@@ -99,6 +99,34 @@ TEST(Rounded, ErrorsThatNoForecastTellsAreMeasured) {
   }
 }
 
+// Colors of bytes stay as they are, but slide along with the positions below them, of which the forecast knows nothing.
+TEST(Rounded, PositionsGetMoreBitsForColorsThatStayExact) {
+  Primitive primitive = Textured(1.0f);
+  AccessorData colors;
+  colors.type = ComponentType::kUint8;
+  colors.normalized = true;
+  colors.components = 4;
+  colors.count = primitive.num_vertices;
+  for (uint64_t v = 0; v < colors.count; ++v) {
+    const auto noise = static_cast<uint8_t>(100 + v * 7919 % 60);
+    colors.bytes.insert(colors.bytes.end(), {noise, noise, noise, 255});
+  }
+  primitive.attributes.resize(1);
+  const TexelScale scale = [](size_t, uint64_t set) { return Texels(set); };
+  const double error = DistanceOfPsnr(50.0, BoundingBoxDiagonal(Surface(primitive)));
+  const FamilyMeter plain({&primitive}, error, {}, 1024, scale);
+  const int bits = RoundFamily(plain.primitives(), plain).value().precisions[0].positions.bits;
+  primitive.attributes.push_back({"COLOR_0", colors});
+  const FamilyMeter meter({&primitive}, error, {}, 1024, scale);
+  const auto rounded = RoundFamily(meter.primitives(), meter);
+  ASSERT_TRUE(rounded.ok()) << rounded.status().message();
+  const SurfaceErrors seen = Seen(primitive, rounded.value().members[0].decoded, scale);
+  const double allowed = FamilyTargets(meter.original(), error, {}, 1024).attributes[0];
+  EXPECT_LE(seen.attributes[0].rms_99, 1.02 * allowed);
+  EXPECT_GE(seen.attributes[0].rms_99, 0.2 * allowed);  // not just any bits
+  EXPECT_GT(rounded.value().precisions[0].positions.bits, bits);
+}
+
 TEST(Rounded, SurfacesWithoutAreaAreHeldToTheirVertices) {
   Primitive primitive = Textured(1.0f);
   primitive.triangles = {{0, 0, 1}};
