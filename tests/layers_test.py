@@ -29,7 +29,7 @@ INSTALLED = {
     "surface_distance.h": "geometry", "attribute_distance.h": "geometry",
     "clean.h": "remesh", "remesh.h": "remesh",
     "codec.h": "draco", "draco.h": "draco",
-    "file_io.h": "gltf", "mesh_file.h": "gltf", "gltf.h": "gltf", "parsed_gltf.h": "gltf", "tinygltf.h": "gltf",
+    "file_io.h": "gltf", "file_mesh.h": "gltf", "mesh_file.h": "gltf", "gltf.h": "gltf", "parsed_gltf.h": "gltf", "tinygltf.h": "gltf",
 }
 # Installed headers that may include a third-party library, and which.
 INSTALLED_LIBRARIES = {"draco.h": {"draco"}, "tinygltf.h": {"tiny_gltf.h"}}

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "lacerta/codec.h"
 #include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
+#include "mesh_file/file_materials.h"
+#include "mesh_file/file_surface.h"
 #include "mesh_file/readers.h"
 #include "mesh_file/writers.h"
 
@@ -47,6 +50,35 @@ StatusOr<TriangleMesh> ParseDrc(Span<const uint8_t> bytes) {
   return std::move(decoded.mesh);
 }
 
+// The surface alone, as formats without attributes have it.
+StatusOr<FileSurface> Alone(StatusOr<TriangleMesh> mesh) {
+  if (!mesh.ok()) return mesh.status();
+  FileSurface surface;
+  surface.surface = std::move(mesh).value();
+  return surface;
+}
+
+StatusOr<FileSurface> ParseFile(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder) {
+  if (bytes.empty()) return InvalidData("the file is empty");
+  if (IsUtf16(bytes)) return Unsupported("the file is UTF-16 text; save it as UTF-8 or ASCII");
+  if (BeginsWith(bytes, "\xEF\xBB\xBF")) bytes = bytes.Subspan(3);  // the mark of UTF-8
+  switch (format) {
+    case MeshFormat::kPly:
+      return ParsePly(bytes);
+    case MeshFormat::kObj:
+      return ParseObj(bytes);
+    case MeshFormat::kOff:
+      return Alone(ParseOff(bytes));
+    case MeshFormat::kStl:
+      return Alone(ParseStl(bytes));
+    case MeshFormat::kDrc:
+      return Alone(ParseDrc(bytes));
+    case MeshFormat::kGltf:
+      return Alone(ParseGltfSurface(bytes, folder));
+  }
+  return InternalError("a mesh format without a parser");
+}
+
 Status CheckIndices(const TriangleMesh& mesh) {
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const uint32_t index : mesh.triangles[t]) {
@@ -77,24 +109,15 @@ StatusOr<MeshFormat> DetectMeshFormat(const std::string& path, Span<const uint8_
 }
 
 StatusOr<TriangleMesh> ParseMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder) {
-  if (bytes.empty()) return InvalidData("the file is empty");
-  if (IsUtf16(bytes)) return Unsupported("the file is UTF-16 text; save it as UTF-8 or ASCII");
-  if (BeginsWith(bytes, "\xEF\xBB\xBF")) bytes = bytes.Subspan(3);  // the mark of UTF-8
-  switch (format) {
-    case MeshFormat::kPly:
-      return ParsePly(bytes);
-    case MeshFormat::kObj:
-      return ParseObj(bytes);
-    case MeshFormat::kOff:
-      return ParseOff(bytes);
-    case MeshFormat::kStl:
-      return ParseStl(bytes);
-    case MeshFormat::kDrc:
-      return ParseDrc(bytes);
-    case MeshFormat::kGltf:
-      return ParseGltfSurface(bytes, folder);
-  }
-  return InternalError("a mesh format without a parser");
+  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder));
+  return std::move(surface.surface);
+}
+
+StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder) {
+  if (format == MeshFormat::kGltf) return InvalidArgument("glTF assets are more than a mesh");
+  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder));
+  FileMaterials materials = LoadMaterials(folder, &surface);
+  return ToFileMesh(std::move(surface), std::move(materials.materials), std::move(materials.images));
 }
 
 StatusOr<TriangleMesh> ReadMeshFile(const std::string& path) {

@@ -130,7 +130,9 @@ StatusOr<PlyHeader> ParsePlyHeader(Span<const uint8_t> bytes) {
       status = ParseElement(line, &header);
     } else if (keyword == "property") {
       status = ParseProperty(line, &header);
-    } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+    } else if (keyword == "comment") {
+      if (TakeWord(&line) == "TextureFile") header.textures.push_back(RestOfLine(line));
+    } else if (keyword != "obj_info" && !keyword.empty()) {
       status = InvalidData("unknown header keyword \"" + std::string(keyword.substr(0, 40)) + "\"");
     }
     if (!status.ok()) return status.WithContext(scanner.LineName());

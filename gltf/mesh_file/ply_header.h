@@ -36,6 +36,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
+  std::vector<std::string> textures;  // files, as MeshLab names them in comments
   size_t size = 0;  // bytes, up to and with the end of the end_header line
   size_t lines = 0;
 };

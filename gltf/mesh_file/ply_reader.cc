@@ -2,8 +2,10 @@
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "mesh_file/file_surface.h"
 #include "mesh_file/mesh_builder.h"
 #include "mesh_file/ply_header.h"
 #include "mesh_file/readers.h"
@@ -112,26 +114,65 @@ Status ReadRow(const PlyElement& element, Values* values, const Item& item) {
   return Status();
 }
 
+// What properties of vertices are called, by the programs that write them.
+struct VertexColumns {
+  int position[3], normal[3], color[4], texture[2];  // properties; -1 where there is none
+
+  explicit VertexColumns(const PlyElement& vertex)
+      : position{Number(vertex, {"x"}), Number(vertex, {"y"}), Number(vertex, {"z"})},
+        normal{Number(vertex, {"nx"}), Number(vertex, {"ny"}), Number(vertex, {"nz"})},
+        color{Number(vertex, {"red", "diffuse_red"}), Number(vertex, {"green", "diffuse_green"}), Number(vertex, {"blue", "diffuse_blue"}),
+              Number(vertex, {"alpha", "diffuse_alpha"})},
+        texture{Number(vertex, {"s", "u", "texture_u"}), Number(vertex, {"t", "v", "texture_v"})} {}
+
+  bool has_normals() const { return normal[0] >= 0 && normal[1] >= 0 && normal[2] >= 0; }
+  bool has_colors() const { return color[0] >= 0 && color[1] >= 0 && color[2] >= 0; }
+  bool has_texture() const { return texture[0] >= 0 && texture[1] >= 0; }
+
+ private:
+  static int Number(const PlyElement& vertex, const std::vector<std::string>& names) {
+    const int found = vertex.Find(names);
+    return found >= 0 && !vertex.properties[static_cast<size_t>(found)].is_list ? found : -1;
+  }
+};
+
+// Integers of colors count to the largest of their type.
+double ColorScale(PlyType type) { return PlyTypeIsInteger(type) ? 1 / (std::exp2(8.0 * static_cast<double>(PlyTypeSize(type))) - 1) : 1; }
+
+// Vertex v has row v of each of its attributes.
+struct VertexAttributes {
+  CornerValues texture = TextureValues(), normals = NormalValues(), colors = ColorValues(3);
+};
+
 template <typename Values>
-Status ReadVertices(const PlyElement& element, Values* values, TriangleMesh* mesh) {
-  int axis_property[3];
+Status ReadVertices(const PlyElement& element, Values* values, TriangleMesh* mesh, VertexAttributes* attributes) {
+  const VertexColumns columns(element);
   const char* const axes[3] = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
-    axis_property[axis] = element.Find({axes[axis]});
-    if (axis_property[axis] < 0 || element.properties[static_cast<size_t>(axis_property[axis])].is_list) {
-      return InvalidData(std::string("the vertices have no property ") + axes[axis]);
-    }
+    if (columns.position[axis] < 0) return InvalidData(std::string("the vertices have no property ") + axes[axis]);
   }
+  const bool has_alpha = columns.color[3] >= 0;
+  if (has_alpha) attributes->colors = ColorValues(4);
+  const double color_scale = columns.has_colors() ? ColorScale(element.properties[static_cast<size_t>(columns.color[0])].type) : 1;
+  std::vector<double> row(element.properties.size());
+  const auto number = [&](int property, double scale = 1) { return static_cast<float>(scale * row[static_cast<size_t>(property)]); };
   mesh->positions.reserve(static_cast<size_t>(element.count));
   for (uint64_t v = 0; v < element.count; ++v) {
-    double xyz[3] = {};
-    LACERTA_RETURN_IF_ERROR(ReadRow(element, values, [&](size_t property, double value) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if (static_cast<int>(property) == axis_property[axis]) xyz[axis] = value;
-      }
-    }));
-    LACERTA_RETURN_IF_ERROR(AppendPosition(xyz[0], xyz[1], xyz[2], mesh));
+    LACERTA_RETURN_IF_ERROR(ReadRow(element, values, [&](size_t property, double value) { row[property] = value; }));
+    const auto [x, y, z] = columns.position;
+    LACERTA_RETURN_IF_ERROR(AppendPosition(row[static_cast<size_t>(x)], row[static_cast<size_t>(y)], row[static_cast<size_t>(z)], mesh));
+    if (columns.has_normals()) {
+      for (const int property : columns.normal) attributes->normals.attribute.values.push_back(number(property));
+    }
+    if (columns.has_colors()) {
+      for (int c = 0; c < (has_alpha ? 4 : 3); ++c) attributes->colors.attribute.values.push_back(number(columns.color[c], color_scale));
+    }
+    if (columns.has_texture()) {
+      attributes->texture.attribute.values.push_back(number(columns.texture[0]));
+      attributes->texture.attribute.values.push_back(1 - number(columns.texture[1]));  // from below
+    }
   }
+  if (columns.has_colors() && color_scale == 1) CountFromZeroToOne(&attributes->colors.attribute);
   return Status();
 }
 
@@ -148,34 +189,64 @@ StatusOr<size_t> FindIndices(const PlyElement& element) {
   return indices;
 }
 
-// Calls done(row, vertices) for each row. vertices: -1 for what no index can be.
+// One row of faces or strips.
+struct FaceRow {
+  std::vector<int64_t> vertices;  // -1 for what no index can be
+  std::vector<float> texture;     // of the corners one after the other, as MeshLab writes them
+  int64_t texture_number = 0;
+};
+
+// Calls done(row number, FaceRow) for each row.
 template <typename Values, typename Done>
-Status ReadIndexLists(const PlyElement& element, Values* values, const Done& done) {
+Status ReadFaceRows(const PlyElement& element, Values* values, const Done& done) {
   LACERTA_ASSIGN_OR_RETURN(const size_t indices, FindIndices(element));
-  std::vector<int64_t> vertices;
+  const int texture = element.Find({"texcoord"}), number = element.Find({"texnumber"});
+  FaceRow face;
   for (uint64_t row = 0; row < element.count; ++row) {
-    vertices.clear();
+    face.vertices.clear();
+    face.texture.clear();
     LACERTA_RETURN_IF_ERROR(ReadRow(element, values, [&](size_t property, double value) {
       // A double holds every index that can be in range.
-      if (property == indices) vertices.push_back(std::abs(value) < 1e15 ? static_cast<int64_t>(value) : -1);
+      const int64_t index = std::abs(value) < 1e15 ? static_cast<int64_t>(value) : -1;
+      if (property == indices) face.vertices.push_back(index);
+      if (static_cast<int>(property) == texture) face.texture.push_back(static_cast<float>(value));
+      if (static_cast<int>(property) == number) face.texture_number = index;
     }));
-    LACERTA_RETURN_IF_ERROR(done(row, vertices));
+    LACERTA_RETURN_IF_ERROR(done(row, face));
   }
   return Status();
 }
 
+// wedges: texture coordinates that faces have themselves.
 template <typename Values>
-Status ReadFaces(const PlyElement& element, uint64_t num_vertices, Values* values, TriangleMesh* mesh) {
-  mesh->triangles.reserve(static_cast<size_t>(element.count));
-  return ReadIndexLists(element, values,
-                        [&](uint64_t face, const std::vector<int64_t>& corners) { return AppendPolygon(corners, num_vertices, face, mesh); });
+Status ReadFaces(const PlyElement& element, uint64_t num_vertices, Values* values, FileSurface* surface, CornerValues* wedges) {
+  TriangleMesh& mesh = surface->surface;
+  mesh.triangles.reserve(static_cast<size_t>(element.count));
+  std::vector<uint32_t> rows;
+  return ReadFaceRows(element, values, [&](uint64_t number, const FaceRow& face) {
+    LACERTA_RETURN_IF_ERROR(AppendPolygon(face.vertices, num_vertices, number, &mesh));
+    std::vector<float>& values_of_wedges = wedges->attribute.values;
+    const bool has_wedges = face.texture.size() == 2 * face.vertices.size();
+    rows.clear();
+    for (size_t i = 0; i < face.vertices.size(); ++i) {
+      rows.push_back(has_wedges ? wedges->attribute.num_values() : MeshAttribute::kNoValue);
+      if (has_wedges) values_of_wedges.insert(values_of_wedges.end(), {face.texture[2 * i], 1 - face.texture[2 * i + 1]});
+    }
+    AppendFan(rows, &wedges->attribute.corners);
+    const bool has_texture = face.texture_number >= 0 && face.texture_number < static_cast<int64_t>(surface->textures.size());
+    if (!surface->textures.empty()) {
+      surface->triangle_materials.resize(mesh.triangles.size(), has_texture ? static_cast<uint32_t>(face.texture_number) : FileMesh::kNoMaterial);
+    }
+    return Status();
+  });
 }
 
 // Strips as Stanford's tools write them: every vertex makes a triangle with the two before it, each second one turned round; -1 begins
 // a new strip.
 template <typename Values>
 Status ReadStrips(const PlyElement& element, uint64_t num_vertices, Values* values, TriangleMesh* mesh) {
-  return ReadIndexLists(element, values, [&](uint64_t row, const std::vector<int64_t>& vertices) {
+  return ReadFaceRows(element, values, [&](uint64_t row, const FaceRow& face) {
+    const std::vector<int64_t>& vertices = face.vertices;
     size_t begin = 0;
     for (size_t i = 0; i < vertices.size(); ++i) {
       if (vertices[i] == -1) begin = i + 1;
@@ -206,7 +277,12 @@ uint64_t LeastRowBytes(const PlyElement& element) {
 }
 
 template <typename Values>
-Status ReadBody(const PlyHeader& header, Values* values, TriangleMesh* mesh) {
+StatusOr<FileSurface> ReadBody(const PlyHeader& header, Values* values) {
+  FileSurface surface;
+  surface.textures = header.textures;
+  TriangleMesh& mesh = surface.surface;
+  VertexAttributes attributes;
+  CornerValues wedges = TextureValues();
   uint64_t num_vertices = 0;
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") num_vertices = element.count;
@@ -217,35 +293,43 @@ Status ReadBody(const PlyHeader& header, Values* values, TriangleMesh* mesh) {
                                        values->bytes_left() + Values::kSlack, "rows of element " + element.name));
     Status status;
     if (element.name == "vertex") {
-      status = ReadVertices(element, values, mesh);
+      status = ReadVertices(element, values, &mesh, &attributes);
     } else if (element.name == "face") {
-      status = ReadFaces(element, num_vertices, values, mesh);
+      status = ReadFaces(element, num_vertices, values, &surface, &wedges);
     } else if (element.name == "tristrips") {
-      status = ReadStrips(element, num_vertices, values, mesh);
+      status = ReadStrips(element, num_vertices, values, &mesh);
     } else {
       status = SkipRows(element, values);
     }
     if (!status.ok()) return status.WithContext(values->Where());
   }
-  if (mesh->positions.size() != num_vertices) return InvalidData("the vertices have no properties");
-  return Status();
+  if (mesh.positions.size() != num_vertices) return InvalidData("the vertices have no properties");
+  LACERTA_RETURN_IF_ERROR(CheckNotEmpty(mesh));
+  const bool has_wedges = !wedges.attribute.values.empty();
+  if (has_wedges) std::swap(attributes.texture, wedges);  // they may have seams
+  for (CornerValues* values_at : {&attributes.texture, &attributes.normals, &attributes.colors}) {
+    MeshAttribute& attribute = values_at->attribute;
+    if (attribute.values.empty()) continue;
+    const bool by_corner = has_wedges && values_at == &attributes.texture;
+    if (!by_corner) attribute.corners = mesh.triangles;
+    attribute.corners.resize(mesh.triangles.size(), {MeshAttribute::kNoValue, MeshAttribute::kNoValue, MeshAttribute::kNoValue});  // of strips
+    surface.attributes.push_back(std::move(*values_at));
+  }
+  if (!surface.triangle_materials.empty()) surface.triangle_materials.resize(mesh.triangles.size(), FileMesh::kNoMaterial);
+  return surface;
 }
 
 }  // namespace
 
-StatusOr<TriangleMesh> ParsePly(Span<const uint8_t> bytes) {
+StatusOr<FileSurface> ParsePly(Span<const uint8_t> bytes) {
   LACERTA_ASSIGN_OR_RETURN(const PlyHeader header, ParsePlyHeader(bytes));
-  TriangleMesh mesh;
   if (header.encoding == PlyEncoding::kAscii) {
     const Span<const uint8_t> body = bytes.Subspan(header.size);
     AsciiValues values({reinterpret_cast<const char*>(body.data()), body.size()}, header.lines);
-    LACERTA_RETURN_IF_ERROR(ReadBody(header, &values, &mesh));
-  } else {
-    BinaryValues values(bytes, header.size, header.encoding == PlyEncoding::kBigEndian);
-    LACERTA_RETURN_IF_ERROR(ReadBody(header, &values, &mesh));
+    return ReadBody(header, &values);
   }
-  LACERTA_RETURN_IF_ERROR(CheckNotEmpty(mesh));
-  return mesh;
+  BinaryValues values(bytes, header.size, header.encoding == PlyEncoding::kBigEndian);
+  return ReadBody(header, &values);
 }
 
 }  // namespace lacerta

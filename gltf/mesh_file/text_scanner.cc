@@ -27,6 +27,12 @@ std::string_view TakeWord(std::string_view* rest) {
   return word;
 }
 
+std::string RestOfLine(std::string_view rest) {
+  while (!rest.empty() && IsBlank(rest.front())) rest.remove_prefix(1);
+  while (!rest.empty() && IsBlank(rest.back())) rest.remove_suffix(1);
+  return std::string(rest);
+}
+
 bool ParseDouble(std::string_view word, double* value) {
   word = WithoutPlus(word);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), *value);

@@ -12,6 +12,9 @@ namespace lacerta {
 // Takes the first word off `*rest`; empty when there is none left.
 std::string_view TakeWord(std::string_view* rest);
 
+// What is left without blanks before and after it: a name that may have some within.
+std::string RestOfLine(std::string_view rest);
+
 // The whole word as a number. "nan" and "inf" are numbers here; a value beyond the range of double becomes infinite.
 bool ParseDouble(std::string_view word, double* value);
 bool ParseInt(std::string_view word, int64_t* value);

@@ -239,4 +239,11 @@ StatusOr<PackResult> PackMesh(const TriangleMesh& mesh, const std::string& name,
   return PackDocument(SingleMeshDocument(mesh, name), options);
 }
 
+StatusOr<PackResult> PackMesh(const FileMesh& mesh, const std::string& name, const PackOptions& options) {
+  if (mesh.mesh.surface.triangles.empty()) return InvalidData("the mesh has no triangles");
+  LACERTA_ASSIGN_OR_RETURN(PackResult result, PackDocument(SingleMeshDocument(mesh, name), options));
+  result.report.notes.insert(result.report.notes.begin(), mesh.notes.begin(), mesh.notes.end());
+  return result;
+}
+
 }  // namespace lacerta

@@ -5,12 +5,15 @@
 #include <string>
 
 #include "document/gltf_document.h"
+#include "lacerta/file_mesh.h"
 #include "lacerta/mesh.h"
 
 namespace lacerta {
 
 // One scene with one node that shows the mesh in core glTF: positions and indices. `name` may be empty.
 GltfDocument SingleMeshDocument(const TriangleMesh& mesh, const std::string& name);
+// With its attributes, materials and images; a primitive for each group.
+GltfDocument SingleMeshDocument(const FileMesh& mesh, const std::string& name);
 
 }  // namespace lacerta
 

@@ -36,6 +36,7 @@ struct PackArguments {
   int quality_layers = 1;
   bool external = false;
   bool keep_vertices = false;
+  bool shape_only = false;
   BatchOptions batch;
   bool tables = false;  // somebody is looking
 };
@@ -135,8 +136,13 @@ StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& 
   if (!is_json) format = DetectMeshFormat(arguments.input, bytes);
   if (!format.ok()) return format.status();
   if (format.value() == MeshFormat::kGltf) return PackGltf(bytes, options);
-  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ParseMesh(bytes, format.value(), options.folder));
-  return PackMesh(mesh, std::filesystem::path(arguments.input).stem().string(), options);
+  const std::string name = std::filesystem::path(arguments.input).stem().string();
+  if (arguments.shape_only) {
+    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ParseMesh(bytes, format.value(), options.folder));
+    return PackMesh(mesh, name, options);
+  }
+  LACERTA_ASSIGN_OR_RETURN(const FileMesh mesh, ParseFileMesh(bytes, format.value(), options.folder));
+  return PackMesh(mesh, name, options);
 }
 
 // A relative URI of a file name: what is not safe in one is escaped.
@@ -259,6 +265,10 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
                    "At most this RMS error of normals and tangents, in degrees (default: 2); of simplified surfaces over the 99 % of the "
                    "area where it is least")
       ->check(CLI::PositiveNumber);
+  pack->add_option_function<double>(
+          "--color-error", [arguments](double error) { arguments->attributes.color = error / 255; },
+          "At most this RMS error of each component of colors, in 255ths (default: 0.29, as integers of 8 bits have)")
+      ->check(CLI::PositiveNumber);
   pack->add_flag("--normals-everywhere", arguments->attributes.normals_everywhere,
                  "Hold the normals of simplified surfaces to --normal-error over their whole area");
   pack->add_option("--fallback", arguments->fallback, "What readers without the extension show (.glb; default: draco)")
@@ -279,6 +289,8 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   pack->add_flag("--external", arguments->external,
                  "Put refinements into a second file, OUT.refinements.bin, which readers fetch when they want it");
   pack->add_flag("--keep-vertices", arguments->keep_vertices, "Do not simplify surfaces with attributes, only round them");
+  pack->add_flag("--shape-only", arguments->shape_only,
+                 "Of .obj and .ply files take the shape alone, without texture coordinates, normals, colors and materials");
   AddBatchOptions(pack, &arguments->batch);
   pack->add_flag("--json", arguments->batch.json, "Print a report as JSON");
   pack->footer(kExitCodeHelp);

@@ -11,6 +11,7 @@
 
 #include "lacerta/codec.h"
 #include "lacerta/decoder.h"
+#include "lacerta/file_mesh.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
 
@@ -113,8 +114,12 @@ StatusOr<PackResult> PackGltf(Span<const uint8_t> asset, const PackOptions& opti
 // Packs one mesh as an asset of its own. `name` may be empty. Fails like EncodeMesh.
 StatusOr<PackResult> PackMesh(const TriangleMesh& mesh, const std::string& name, const PackOptions& options);
 
+// The same of a mesh with what its file laid on it: one primitive for each group. Its notes come first in the report's.
+StatusOr<PackResult> PackMesh(const FileMesh& mesh, const std::string& name, const PackOptions& options);
+
 // A GLB of one mesh in core glTF, uncompressed. Triangle indices must be below #V. Fails with kUnsupported beyond 4 GB.
 StatusOr<Bytes> FormatPlainGlb(const TriangleMesh& mesh, const std::string& name);
+StatusOr<Bytes> FormatPlainGlb(const FileMesh& mesh, const std::string& name);
 
 struct UnpackOptions {
   std::optional<int> level;  // stop there; empty: as far as the data goes

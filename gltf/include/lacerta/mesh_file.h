@@ -1,13 +1,13 @@
 // Triangle meshes in files: what the command and the tools around it read and write.
 //
-// Readers take positions and faces and leave everything else (colours, normals, texture coordinates) aside. They are
-// safe on untrusted bytes: every count is held against the size of the file before memory is taken for it.
+// Readers are safe on untrusted bytes: every count is held against the size of the file before memory is taken for it.
 #ifndef LACERTA_MESH_FILE_H_
 #define LACERTA_MESH_FILE_H_
 
 #include <cstdint>
 #include <string>
 
+#include "lacerta/file_mesh.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
 
@@ -26,11 +26,16 @@ enum class MeshFormat {
 // Fails with kUnsupported, naming the extensions that are known.
 StatusOr<MeshFormat> DetectMeshFormat(const std::string& path, Span<const uint8_t> bytes);
 
-// Parses the bytes of one file. Polygons are cut into fans. Positions are float; values that are not finite as float
+// Parses the surface of one file and leaves all else aside. Polygons are cut into fans. Positions are float; values that are not finite as float
 // are refused with the index of the vertex, faces with fewer than three corners or an index out of range with that of
 // the face. `folder` is where the buffers of a .gltf are looked for; no other format uses it. Fails with kInvalidData,
 // naming line or byte offset, or kUnsupported.
 StatusOr<TriangleMesh> ParseMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder = "");
+
+// The same with what .obj and .ply files lay on the surface: texture coordinates, normals, colors; of .obj the materials of .mtl files and
+// their textures, of .ply the textures of `comment TextureFile`, all read from `folder` and nowhere else (empty: the working directory). What
+// cannot be used is left aside with a note, and never in the way of the surface. Other formats: the surface alone. kGltf is not for here.
+StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder);
 
 // Reads a file of any of the formats above. Messages begin with `path`. Fails with kNotFound or kIoError besides what
 // ParseMesh returns.

@@ -1,0 +1,169 @@
+#include "mesh_file/file_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "decoder/smooth_normals.h"
+
+namespace lacerta {
+namespace {
+
+constexpr uint32_t kNone = MeshAttribute::kNoValue;
+
+bool HasAll(const Triangle& corners) { return std::find(corners.begin(), corners.end(), kNone) == corners.end(); }
+
+// Faces have an attribute at all corners or at none. Why it cannot be used; empty where it can.
+std::string Trouble(MeshAttribute* attribute) {
+  for (size_t f = 0; f < attribute->corners.size(); ++f) {
+    Triangle& corners = attribute->corners[f];
+    if (!HasAll(corners)) corners = {kNone, kNone, kNone};
+    for (const uint32_t row : corners) {
+      if (row == kNone) continue;
+      if (row >= attribute->num_values()) {
+        return "triangle " + std::to_string(f) + " has value " + std::to_string(row) + " of " + std::to_string(attribute->num_values()) +
+               " (counted from 0)";
+      }
+      for (uint32_t c = 0; c < attribute->components; ++c) {
+        if (!std::isfinite(attribute->values[row * attribute->components + c])) return "value " + std::to_string(row) + " is not finite";
+      }
+    }
+  }
+  return "";
+}
+
+bool IsUsed(const MeshAttribute& attribute) { return std::any_of(attribute.corners.begin(), attribute.corners.end(), HasAll); }
+
+Vec3f NormalAt(const MeshAttribute& normals, uint32_t row) {
+  return {normals.values[3 * row], normals.values[3 * row + 1], normals.values[3 * row + 2]};
+}
+
+// glTF wants unit vectors. Writers leave zeros where they could not tell.
+void MakeUnit(const TriangleMesh& surface, MeshAttribute* normals) {
+  std::vector<Vec3f> smooth;
+  for (size_t f = 0; f < normals->corners.size(); ++f) {
+    for (size_t i = 0; i < 3; ++i) {
+      uint32_t& row = normals->corners[f][i];
+      if (row == kNone || Norm(Vec3Cast<double>(NormalAt(*normals, row))) > 0) continue;
+      if (smooth.empty()) smooth = SmoothNormals(surface.positions, surface.triangles);
+      const Vec3f& normal = smooth[surface.triangles[f][i]];
+      row = normals->num_values();
+      normals->values.insert(normals->values.end(), {normal.x, normal.y, normal.z});
+    }
+  }
+  for (uint32_t row = 0; row < normals->num_values(); ++row) {
+    const Vec3d normal = Vec3Cast<double>(NormalAt(*normals, row));
+    const Vec3d unit = Norm(normal) > 0 ? Normalized(normal) : Vec3d{0, 0, 1};
+    for (int axis = 0; axis < 3; ++axis) normals->values[3 * row + static_cast<uint32_t>(axis)] = static_cast<float>(unit[axis]);
+  }
+}
+
+// IEC 61966-2-1.
+float LinearOf(float screen) {
+  const double s = std::clamp(static_cast<double>(screen), 0.0, 1.0);
+  return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+}
+
+// Three components where all is opaque.
+void MakeLinear(MeshAttribute* colors) {
+  const uint32_t components = colors->components;
+  bool is_opaque = components == 4;
+  for (uint32_t row = 0; row < colors->num_values() && is_opaque; ++row) is_opaque = colors->values[4 * row + 3] >= 1;
+  const uint32_t kept = is_opaque ? 3 : components;
+  std::vector<float> values;
+  values.reserve(colors->num_values() * kept);
+  for (uint32_t row = 0; row < colors->num_values(); ++row) {
+    for (uint32_t c = 0; c < kept; ++c) {
+      const float value = colors->values[row * components + c];
+      values.push_back(c < 3 ? LinearOf(value) : std::clamp(value, 0.0f, 1.0f));
+    }
+  }
+  colors->components = kept;
+  colors->values = std::move(values);
+}
+
+CornerValues Values(const char* name, AttributeKind kind, uint32_t components) {
+  CornerValues values;
+  values.attribute.name = name;
+  values.attribute.kind = kind;
+  values.attribute.components = components;
+  return values;
+}
+
+// What shows a texture was meant to show it as it is, and glTF would multiply the two.
+void LeaveOutColorsBelowTextures(const std::vector<uint32_t>& triangle_materials, FileMesh* file) {
+  MeshAttribute* colors = nullptr;
+  const MeshAttribute* texture = nullptr;
+  for (MeshAttribute& attribute : file->mesh.attributes) {
+    if (attribute.kind == AttributeKind::kColor) colors = &attribute;
+    if (attribute.kind == AttributeKind::kTextureCoordinates) texture = &attribute;
+  }
+  if (colors == nullptr || texture == nullptr || triangle_materials.empty()) return;
+  bool is_any = false;
+  for (size_t f = 0; f < triangle_materials.size(); ++f) {
+    const uint32_t material = triangle_materials[f];
+    const bool is_below = material != FileMesh::kNoMaterial && file->materials[material].base_color_image && HasAll(texture->corners[f]);
+    if (is_below) colors->corners[f] = {kNone, kNone, kNone};
+    is_any = is_any || is_below;
+  }
+  if (!is_any) return;
+  file->notes.push_back("COLOR_0 is left aside where a texture is shown, which has the colors");
+  if (!IsUsed(*colors)) file->mesh.attributes.erase(file->mesh.attributes.begin() + (colors - file->mesh.attributes.data()));
+}
+
+// One group for each material and set of attributes, in the order of their first faces.
+void GroupFaces(const std::vector<uint32_t>& triangle_materials, FileMesh* file) {
+  AttributedMesh& mesh = file->mesh;
+  std::map<std::pair<uint32_t, std::vector<bool>>, uint32_t> groups;
+  mesh.groups.reserve(mesh.surface.triangles.size());
+  for (size_t f = 0; f < mesh.surface.triangles.size(); ++f) {
+    std::vector<bool> has;
+    for (const MeshAttribute& attribute : mesh.attributes) has.push_back(HasAll(attribute.corners[f]));
+    const uint32_t material = triangle_materials.empty() ? FileMesh::kNoMaterial : triangle_materials[f];
+    const auto [group, is_new] = groups.emplace(std::make_pair(material, std::move(has)), static_cast<uint32_t>(groups.size()));
+    if (is_new) file->group_materials.push_back(material);
+    mesh.groups.push_back(group->second);
+  }
+}
+
+}  // namespace
+
+CornerValues TextureValues() { return Values("TEXCOORD_0", AttributeKind::kTextureCoordinates, 2); }
+CornerValues NormalValues() { return Values("NORMAL", AttributeKind::kNormal, 3); }
+CornerValues ColorValues(uint32_t components) { return Values("COLOR_0", AttributeKind::kColor, components); }
+
+void AppendFan(const std::vector<uint32_t>& rows, std::vector<Triangle>* corners) {
+  for (size_t i = 2; i < rows.size(); ++i) corners->push_back({rows[0], rows[i - 1], rows[i]});
+}
+
+void CountFromZeroToOne(MeshAttribute* colors) {
+  if (std::none_of(colors->values.begin(), colors->values.end(), [](float value) { return value > 1; })) return;
+  for (float& value : colors->values) value /= 255;
+}
+
+FileMesh ToFileMesh(FileSurface surface, std::vector<FileMaterial> materials, std::vector<FileImage> images) {
+  FileMesh file;
+  file.mesh.surface = std::move(surface.surface);
+  file.materials = std::move(materials);
+  file.images = std::move(images);
+  file.notes = std::move(surface.notes);
+  for (CornerValues& values : surface.attributes) {
+    MeshAttribute& attribute = values.attribute;
+    if (!IsUsed(attribute)) continue;
+    if (values.trouble.empty()) values.trouble = Trouble(&attribute);
+    if (!values.trouble.empty()) {
+      file.notes.push_back(attribute.name + " is left aside: " + values.trouble);
+      continue;
+    }
+    for (float& value : attribute.values) value = std::isfinite(value) ? value : 0.0f;  // in rows that nothing uses
+    if (attribute.kind == AttributeKind::kNormal) MakeUnit(file.mesh.surface, &attribute);
+    if (attribute.kind == AttributeKind::kColor) MakeLinear(&attribute);
+    file.mesh.attributes.push_back(std::move(attribute));
+  }
+  LeaveOutColorsBelowTextures(surface.triangle_materials, &file);
+  GroupFaces(surface.triangle_materials, &file);
+  return file;
+}
+
+}  // namespace lacerta
