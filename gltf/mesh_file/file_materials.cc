@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -60,7 +61,8 @@ class Loader {
       result_.materials.emplace_back().name = name;
     }
     bool is_told = false;
-    for (const std::string& library : surface_.material_libraries) is_told = ReadLibrary(library) || is_told;
+    const std::set<std::string> libraries(surface_.material_libraries.begin(), surface_.material_libraries.end());
+    for (const std::string& library : libraries) is_told = ReadLibrary(library) || is_told;
     if (!is_told) {
       surface_.triangle_materials.clear();
       result_.materials.clear();

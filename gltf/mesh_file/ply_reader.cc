@@ -189,6 +189,8 @@ StatusOr<size_t> FindIndices(const PlyElement& element) {
   return indices;
 }
 
+constexpr Triangle kNoRows = {MeshAttribute::kNoValue, MeshAttribute::kNoValue, MeshAttribute::kNoValue};
+
 // One row of faces or strips.
 struct FaceRow {
   std::vector<int64_t> vertices;  // -1 for what no index can be
@@ -221,9 +223,11 @@ Status ReadFaceRows(const PlyElement& element, Values* values, const Done& done)
 template <typename Values>
 Status ReadFaces(const PlyElement& element, uint64_t num_vertices, Values* values, FileSurface* surface, CornerValues* wedges) {
   TriangleMesh& mesh = surface->surface;
+  wedges->attribute.corners.resize(mesh.triangles.size(), kNoRows);  // of strips that came before
   mesh.triangles.reserve(static_cast<size_t>(element.count));
   std::vector<uint32_t> rows;
   return ReadFaceRows(element, values, [&](uint64_t number, const FaceRow& face) {
+    const size_t num_before = mesh.triangles.size();
     LACERTA_RETURN_IF_ERROR(AppendPolygon(face.vertices, num_vertices, number, &mesh));
     std::vector<float>& values_of_wedges = wedges->attribute.values;
     const bool has_wedges = face.texture.size() == 2 * face.vertices.size();
@@ -235,6 +239,7 @@ Status ReadFaces(const PlyElement& element, uint64_t num_vertices, Values* value
     AppendFan(rows, &wedges->attribute.corners);
     const bool has_texture = face.texture_number >= 0 && face.texture_number < static_cast<int64_t>(surface->textures.size());
     if (!surface->textures.empty()) {
+      surface->triangle_materials.resize(num_before, FileMesh::kNoMaterial);
       surface->triangle_materials.resize(mesh.triangles.size(), has_texture ? static_cast<uint32_t>(face.texture_number) : FileMesh::kNoMaterial);
     }
     return Status();
@@ -312,7 +317,7 @@ StatusOr<FileSurface> ReadBody(const PlyHeader& header, Values* values) {
     if (attribute.values.empty()) continue;
     const bool by_corner = has_wedges && values_at == &attributes.texture;
     if (!by_corner) attribute.corners = mesh.triangles;
-    attribute.corners.resize(mesh.triangles.size(), {MeshAttribute::kNoValue, MeshAttribute::kNoValue, MeshAttribute::kNoValue});  // of strips
+    attribute.corners.resize(mesh.triangles.size(), kNoRows);  // of strips
     surface.attributes.push_back(std::move(*values_at));
   }
   if (!surface.triangle_materials.empty()) surface.triangle_materials.resize(mesh.triangles.size(), FileMesh::kNoMaterial);

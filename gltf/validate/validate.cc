@@ -177,13 +177,25 @@ bool ValidationReport::IsValid() const {
   return std::none_of(issues.begin(), issues.end(), [](const ValidationIssue& issue) { return issue.is_error; });
 }
 
+namespace {
+
+// As PackMesh made it. An asset of one primitive may hold the shape alone, and shape is all that is measured.
+GltfDocument OriginalOf(const FileMesh& mesh, const GltfDocument& packed) {
+  const Json* first = FindElement(packed.json, "meshes", 0);
+  const bool is_one = first != nullptr && ArraySize(*first, "primitives") == 1;
+  return is_one ? SingleMeshDocument(mesh.mesh.surface, "") : SingleMeshDocument(mesh, "");
+}
+
+}  // namespace
+
 ValidationReport ValidateGltf(Span<const uint8_t> asset, const ValidateOptions& options) {
   const StatusOr<GltfDocument> document = ParseGltf(asset, options.folder);
   if (!document.ok()) return {{{true, "", document.status().message()}}, {}};
   Validator validator(document.value(), options);
   StatusOr<GltfDocument> original = NotFound("");
   if (options.original_mesh.has_value() || !options.original.empty()) {
-    original = options.original_mesh.has_value() ? SingleMeshDocument(*options.original_mesh, "") : ParseGltf(options.original, options.original_folder);
+    original = options.original_mesh.has_value() ? OriginalOf(*options.original_mesh, document.value())
+                                                 : ParseGltf(options.original, options.original_folder);
     if (!original.ok()) return {{{true, "", "the original: " + original.status().message()}}, {}};
     validator.SetOriginal(&original.value());
   }

@@ -101,15 +101,28 @@ void PrintPackReport(const PackArguments& arguments, const PackReport& report, u
               static_cast<unsigned long long>(after));
 }
 
-StatusOr<TriangleMesh> ReadAnyMesh(const std::string& path) {
-  if (path != "-") return ReadMeshFile(path);
+// The surface of a file, and what of it a bare stream has no place for.
+StatusOr<TriangleMesh> ReadSurface(const PackArguments& arguments, std::vector<std::string>* notes) {
+  const std::string& path = arguments.input;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
   LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadInput(path));
-  LACERTA_ASSIGN_OR_RETURN(const MeshFormat format, DetectMeshFormat(path, bytes));
-  return ParseMesh(bytes, format, "");
+  StatusOr<MeshFormat> format = DetectMeshFormat(path, bytes);
+  if (!format.ok()) return format.status().WithContext(path);
+  if (arguments.shape_only || format.value() == MeshFormat::kGltf) {
+    StatusOr<TriangleMesh> mesh = ParseMesh(bytes, format.value(), folder);
+    return mesh.ok() ? std::move(mesh) : StatusOr<TriangleMesh>(mesh.status().WithContext(path));
+  }
+  StatusOr<FileMesh> mesh = ParseFileMesh(bytes, format.value(), folder);
+  if (!mesh.ok()) return mesh.status().WithContext(path);
+  for (const MeshAttribute& attribute : mesh.value().mesh.attributes) {
+    notes->push_back(attribute.name + " is left aside: a bare stream holds the shape alone; pack into a .glb to keep it");
+  }
+  return std::move(mesh.value().mesh.surface);
 }
 
 StatusOr<FileOutcome> PackStream(const PackArguments& arguments, const EncodeOptions& options) {
-  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ReadAnyMesh(arguments.input));
+  std::vector<std::string> notes;
+  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ReadSurface(arguments, &notes));
   const StatusOr<EncodedMesh> encoded = EncodeMesh(mesh, options);
   if (!encoded.ok()) return encoded.status().WithContext(arguments.input);
   LACERTA_RETURN_IF_ERROR(WriteOutput(arguments.output, encoded.value().stream));
@@ -118,9 +131,10 @@ StatusOr<FileOutcome> PackStream(const PackArguments& arguments, const EncodeOpt
   FileOutcome outcome;
   outcome.exit_code = missed ? kExitTargetMissed : kExitOk;
   outcome.bytes_after = encoded.value().stream.size();
-  outcome.json = {{"bytes", outcome.bytes_after}, {"targetMet", !missed}, {"encode", ToJson(report)}};
+  outcome.json = {{"bytes", outcome.bytes_after}, {"targetMet", !missed}, {"encode", ToJson(report)}, {"notes", notes}};
   if (arguments.tables) {
     PrintLevels(report);
+    for (const std::string& note : notes) std::printf("note: %s\n", note.c_str());
     if (!report.reason.empty()) std::printf("note: %s\n", report.reason.c_str());
   }
   if (missed)

@@ -64,7 +64,7 @@ StatusOr<ValidationReport> ValidateFile(const std::string& file, const ValidateA
     options.original_folder = std::filesystem::path(arguments.original).parent_path().string();
     const StatusOr<MeshFormat> format = DetectMeshFormat(arguments.original, original);
     if (format.ok() && format.value() != MeshFormat::kGltf) {
-      StatusOr<TriangleMesh> mesh = ParseMesh(original, format.value());
+      StatusOr<FileMesh> mesh = ParseFileMesh(original, format.value(), options.original_folder);
       if (!mesh.ok()) return mesh.status().WithContext(arguments.original);
       options.original_mesh = std::move(mesh).value();
     }

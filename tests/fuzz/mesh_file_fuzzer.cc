@@ -1,5 +1,5 @@
 // Any bytes as a mesh file; the first byte picks the format. What is read is sound: finite, indices in range, no larger than the
-// file allows. Seeds are in seeds/mesh_file_fuzzer.
+// file allows, and what lies on the surface likewise. Seeds are in seeds/mesh_file_fuzzer.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +11,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
   constexpr lacerta::MeshFormat kFormats[] = {lacerta::MeshFormat::kPly, lacerta::MeshFormat::kObj, lacerta::MeshFormat::kOff,
                                               lacerta::MeshFormat::kStl};
-  const auto mesh = lacerta::ParseMesh({data + 1, size - 1}, kFormats[data[0] % 4]);
+  const lacerta::MeshFormat format = kFormats[data[0] % 4];
+  const auto mesh = lacerta::ParseMesh({data + 1, size - 1}, format);
+  const auto file = lacerta::ParseFileMesh({data + 1, size - 1}, format, "no-such-folder");
+  FUZZ_CHECK(file.ok() == mesh.ok());
   if (!mesh.ok()) {
     FUZZ_CHECK(!mesh.status().message().empty());
     return 0;
@@ -24,5 +27,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   for (const lacerta::Vec3f& p : mesh.value().positions) {
     FUZZ_CHECK(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
   }
+  FUZZ_CHECK(lacerta::CheckAttributedMesh(file.value().mesh).ok());
+  FUZZ_CHECK(file.value().mesh.groups.size() == mesh.value().triangles.size());
+  for (const uint32_t group : file.value().mesh.groups) FUZZ_CHECK(group < file.value().group_materials.size());
   return 0;
 }

@@ -180,7 +180,7 @@ struct ValidateOptions {
   // The asset before packing, to measure the announced errors against; empty: they are not measured.
   Span<const uint8_t> original;
   std::string original_folder;
-  std::optional<TriangleMesh> original_mesh;  // instead of an asset: what PackMesh was given
+  std::optional<FileMesh> original_mesh;  // instead of an asset: what PackMesh was given, or whose shape alone it was given
 };
 
 struct ValidationIssue {
