@@ -101,6 +101,16 @@ StatusOr<Primitive> DecodeDracoPrimitive(Span<const uint8_t> bytes, const std::v
   return ToPrimitive(*mesh, ids);
 }
 
+StatusOr<std::vector<std::string>> DracoAttributeKinds(Span<const uint8_t> bytes) {
+  LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, DecodeStock(bytes, DecodeLimits{}));
+  std::vector<std::string> kinds;
+  for (int i = 0; i < mesh->num_attributes(); ++i) {
+    const draco::GeometryAttribute::Type type = mesh->attribute(i)->attribute_type();
+    if (type != draco::GeometryAttribute::POSITION) kinds.push_back(draco::GeometryAttribute::TypeToString(type));
+  }
+  return kinds;
+}
+
 StatusOr<uint32_t> DracoPositionId(Span<const uint8_t> bytes) {
   LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, DecodeStock(bytes, DecodeLimits{}));
   const draco::PointAttribute* position = mesh->GetNamedAttribute(draco::GeometryAttribute::POSITION);

@@ -22,6 +22,9 @@ struct DracoAttributeId {
 StatusOr<Primitive> DecodeDracoPrimitive(Span<const uint8_t> bytes, const std::vector<DracoAttributeId>& ids,
                                          const DecodeLimits& limits);
 
+// What a stock stream has besides positions, by Draco's own names of kinds ("NORMAL", "TEX_COORD", "COLOR", "GENERIC").
+StatusOr<std::vector<std::string>> DracoAttributeKinds(Span<const uint8_t> bytes);
+
 // The unique id of the position attribute of a stock stream.
 StatusOr<uint32_t> DracoPositionId(Span<const uint8_t> bytes);
 

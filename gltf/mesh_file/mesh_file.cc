@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "document/draco_primitive.h"
 #include "lacerta/codec.h"
 #include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
@@ -44,10 +45,15 @@ StatusOr<TriangleMesh> ParseGltfSurface(Span<const uint8_t> bytes, const std::st
 }
 
 // The whole mesh or none: DecodeMesh tells what is left of a stream that was cut short or damaged.
-StatusOr<TriangleMesh> ParseDrc(Span<const uint8_t> bytes) {
+StatusOr<FileSurface> ParseDrc(Span<const uint8_t> bytes) {
   LACERTA_ASSIGN_OR_RETURN(DecodedMesh decoded, DecodeMesh(bytes, {}));
   LACERTA_RETURN_IF_ERROR(decoded.refinement);
-  return std::move(decoded.mesh);
+  FileSurface surface;
+  surface.surface = std::move(decoded.mesh);
+  const StatusOr<std::vector<std::string>> kinds = DracoAttributeKinds(bytes);  // of streams that a stock decoder reads
+  if (!kinds.ok()) return surface;
+  for (const std::string& kind : kinds.value()) surface.notes.push_back(kind + " of the Draco stream is left aside");
+  return surface;
 }
 
 // The surface alone, as formats without attributes have it.
@@ -68,11 +74,11 @@ StatusOr<FileSurface> ParseFile(Span<const uint8_t> bytes, MeshFormat format, co
     case MeshFormat::kObj:
       return ParseObj(bytes);
     case MeshFormat::kOff:
-      return Alone(ParseOff(bytes));
+      return ParseOff(bytes);
     case MeshFormat::kStl:
       return Alone(ParseStl(bytes));
     case MeshFormat::kDrc:
-      return Alone(ParseDrc(bytes));
+      return ParseDrc(bytes);
     case MeshFormat::kGltf:
       return Alone(ParseGltfSurface(bytes, folder));
   }

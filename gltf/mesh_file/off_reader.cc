@@ -20,7 +20,7 @@ Status NextDataLine(TextScanner* scanner, std::string_view* line) {
 }
 
 // [ST][C][N][4][n]OFF: texture coordinates, colours and normals come after the position and are left aside.
-Status CheckKeyword(std::string_view keyword) {
+Status CheckKeyword(std::string_view keyword, std::vector<std::string>* notes) {
   if (keyword.size() < 3 || keyword.substr(keyword.size() - 3) != "OFF") {
     return InvalidData("does not begin with OFF; this is no OFF file");
   }
@@ -28,7 +28,10 @@ Status CheckKeyword(std::string_view keyword) {
   if (prefix.substr(0, 2) == "ST") prefix.remove_prefix(2);
   if (prefix.substr(0, 1) == "C") prefix.remove_prefix(1);
   if (prefix.substr(0, 1) == "N") prefix.remove_prefix(1);
-  if (prefix.empty()) return Status();
+  if (prefix.empty()) {
+    if (keyword.size() > 3) notes->push_back("of " + std::string(keyword) + " vertices the positions alone are read");
+    return Status();
+  }
   return Unsupported("the variant " + std::string(keyword.substr(0, 40)) + " is not read; convert it to OFF");
 }
 
@@ -67,10 +70,11 @@ Status ReadFace(std::string_view line, uint64_t face, std::vector<int64_t>* corn
   return AppendPolygon(*corners, mesh->positions.size(), face, mesh);
 }
 
-Status ReadAll(TextScanner* scanner, TriangleMesh* mesh) {
+Status ReadAll(TextScanner* scanner, FileSurface* surface) {
+  TriangleMesh* const mesh = &surface->surface;
   std::string_view line;
   LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
-  LACERTA_RETURN_IF_ERROR(CheckKeyword(TakeWord(&line)));
+  LACERTA_RETURN_IF_ERROR(CheckKeyword(TakeWord(&line), &surface->notes));
   std::string_view rest = line;
   const std::string_view next = TakeWord(&rest);
   if (next == "BINARY") return Unsupported("binary OFF is not read; convert it to text");
@@ -97,13 +101,13 @@ Status ReadAll(TextScanner* scanner, TriangleMesh* mesh) {
 
 }  // namespace
 
-StatusOr<TriangleMesh> ParseOff(Span<const uint8_t> bytes) {
+StatusOr<FileSurface> ParseOff(Span<const uint8_t> bytes) {
   TextScanner scanner({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  TriangleMesh mesh;
-  const Status status = ReadAll(&scanner, &mesh);
+  FileSurface surface;
+  const Status status = ReadAll(&scanner, &surface);
   if (!status.ok()) return status.WithContext(scanner.LineName());
-  LACERTA_RETURN_IF_ERROR(CheckNotEmpty(mesh));
-  return mesh;
+  LACERTA_RETURN_IF_ERROR(CheckNotEmpty(surface.surface));
+  return surface;
 }
 
 }  // namespace lacerta

@@ -12,7 +12,7 @@ namespace lacerta {
 
 StatusOr<FileSurface> ParsePly(Span<const uint8_t> bytes);
 StatusOr<FileSurface> ParseObj(Span<const uint8_t> bytes);
-StatusOr<TriangleMesh> ParseOff(Span<const uint8_t> bytes);
+StatusOr<FileSurface> ParseOff(Span<const uint8_t> bytes);
 StatusOr<TriangleMesh> ParseStl(Span<const uint8_t> bytes);
 
 }  // namespace lacerta

@@ -125,6 +125,12 @@ TEST(FileMesh, PlyHasTextureCoordinatesOfFaces) {
   EXPECT_THAT(At(file, 0, 1, 0), ElementsAre(0, 1));
 }
 
+TEST(FileMesh, OtherFormatsSayWhatTheyLeaveAside) {
+  const std::string body = "3 1 0\n0 0 0 1 0 0\n1 0 0 1 0 0\n0 1 0 1 0 0\n3 0 1 2\n";
+  EXPECT_THAT(Parse("COFF\n" + body, MeshFormat::kOff).notes, ElementsAre(HasSubstr("of COFF vertices the positions alone")));
+  EXPECT_THAT(Parse("OFF\n" + body, MeshFormat::kOff).notes, IsEmpty());
+}
+
 // A folder with a material library and its textures.
 class FileMaterials : public ::testing::Test {
  protected:
