@@ -142,6 +142,14 @@ void CountFromZeroToOne(MeshAttribute* colors) {
   for (float& value : colors->values) value /= 255;
 }
 
+FileMesh ShapeOf(FileMesh mesh) {
+  FileMesh shape;
+  shape.mesh.surface = std::move(mesh.mesh.surface);
+  shape.origin = mesh.origin;
+  shape.group_materials = {FileMesh::kNoMaterial};
+  return shape;
+}
+
 FileMesh ToFileMesh(FileSurface surface, std::vector<FileMaterial> materials, std::vector<FileImage> images) {
   FileMesh file;
   file.mesh.surface = std::move(surface.surface);

@@ -5,7 +5,7 @@
 
 namespace lacerta {
 
-Status AppendPosition(double x, double y, double z, TriangleMesh* mesh) {
+Status AppendPosition(double x, double y, double z, const Vec3d& origin, TriangleMesh* mesh) {
   constexpr double kLargest = std::numeric_limits<float>::max();
   for (const double value : {x, y, z}) {
     if (!(std::abs(value) <= kLargest)) {  // written so that NaN fails
@@ -13,7 +13,7 @@ Status AppendPosition(double x, double y, double z, TriangleMesh* mesh) {
                          " is not a finite 32-bit float; repair or remove the vertex");
     }
   }
-  mesh->positions.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+  mesh->positions.push_back(Vec3Cast<float>(Vec3d{x, y, z} - origin));
   return Status();
 }
 

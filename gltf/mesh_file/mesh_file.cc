@@ -1,6 +1,7 @@
 #include "lacerta/mesh_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -37,50 +38,46 @@ bool IsUtf16(Span<const uint8_t> bytes) {
 }
 
 // Notes on what was left out are for those who call FlattenGltf themselves.
-StatusOr<TriangleMesh> ParseGltfSurface(Span<const uint8_t> bytes, const std::string& folder) {
+StatusOr<FileSurface> ParseGltfSurface(Span<const uint8_t> bytes, const std::string& folder, const Vec3d& origin) {
   UnpackOptions options;
+  options.origin = origin;
   options.folder = folder;
   LACERTA_ASSIGN_OR_RETURN(FlattenResult result, FlattenGltf(bytes, options));
-  return std::move(result.mesh);
+  FileSurface surface;
+  surface.surface = std::move(result.mesh);
+  return surface;
 }
 
 // The whole mesh or none: DecodeMesh tells what is left of a stream that was cut short or damaged.
-StatusOr<FileSurface> ParseDrc(Span<const uint8_t> bytes) {
+StatusOr<FileSurface> ParseDrc(Span<const uint8_t> bytes, const Vec3d& origin) {
   LACERTA_ASSIGN_OR_RETURN(DecodedMesh decoded, DecodeMesh(bytes, {}));
   LACERTA_RETURN_IF_ERROR(decoded.refinement);
   FileSurface surface;
   surface.surface = std::move(decoded.mesh);
+  for (Vec3f& position : surface.surface.positions) position = Vec3Cast<float>(Vec3Cast<double>(position) - origin);
   const StatusOr<std::vector<std::string>> kinds = DracoAttributeKinds(bytes);  // of streams that a stock decoder reads
   if (!kinds.ok()) return surface;
   for (const std::string& kind : kinds.value()) surface.notes.push_back(kind + " of the Draco stream is left aside");
   return surface;
 }
 
-// The surface alone, as formats without attributes have it.
-StatusOr<FileSurface> Alone(StatusOr<TriangleMesh> mesh) {
-  if (!mesh.ok()) return mesh.status();
-  FileSurface surface;
-  surface.surface = std::move(mesh).value();
-  return surface;
-}
-
-StatusOr<FileSurface> ParseFile(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder) {
+StatusOr<FileSurface> ParseFile(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, const Vec3d& origin) {
   if (bytes.empty()) return InvalidData("the file is empty");
   if (IsUtf16(bytes)) return Unsupported("the file is UTF-16 text; save it as UTF-8 or ASCII");
   if (BeginsWith(bytes, "\xEF\xBB\xBF")) bytes = bytes.Subspan(3);  // the mark of UTF-8
   switch (format) {
     case MeshFormat::kPly:
-      return ParsePly(bytes);
+      return ParsePly(bytes, origin);
     case MeshFormat::kObj:
-      return ParseObj(bytes);
+      return ParseObj(bytes, origin);
     case MeshFormat::kOff:
-      return ParseOff(bytes);
+      return ParseOff(bytes, origin);
     case MeshFormat::kStl:
-      return Alone(ParseStl(bytes));
+      return ParseStl(bytes, origin);
     case MeshFormat::kDrc:
-      return ParseDrc(bytes);
+      return ParseDrc(bytes, origin);
     case MeshFormat::kGltf:
-      return Alone(ParseGltfSurface(bytes, folder));
+      return ParseGltfSurface(bytes, folder, origin);
   }
   return InternalError("a mesh format without a parser");
 }
@@ -114,34 +111,64 @@ StatusOr<MeshFormat> DetectMeshFormat(const std::string& path, Span<const uint8_
                      "\" is not known; use .glb, .gltf, .obj, .ply, .off, .stl or .drc");
 }
 
-StatusOr<TriangleMesh> ParseMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder) {
-  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder));
+Vec3d FarOrigin(const TriangleMesh& mesh) {
+  constexpr double kFar = 16;  // diagonals: floats are off by less than 125 dB up to there
+  if (mesh.positions.empty()) return {};
+  Vec3d low = Vec3Cast<double>(mesh.positions[0]), high = low;
+  for (const Vec3f& position : mesh.positions) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min<double>(low[axis], position[axis]);
+      high[axis] = std::max<double>(high[axis], position[axis]);
+    }
+  }
+  const double diagonal = Norm(high - low);
+  const auto farthest = [](const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+  if (std::max(farthest(low), farthest(high)) <= kFar * diagonal) return {};
+  Vec3d origin = (low + high) * 0.5;
+  // Of few digits, so that differences to it are exact where positions are floats themselves.
+  const double step = diagonal > 0 ? std::exp2(std::floor(std::log2(diagonal))) : 1;
+  for (int axis = 0; axis < 3; ++axis) origin[axis] = std::round(origin[axis] / step) * step;
+  return origin;
+}
+
+StatusOr<TriangleMesh> ParseMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, const Vec3d& origin) {
+  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder, origin));
   return std::move(surface.surface);
 }
 
 StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder) {
   if (format == MeshFormat::kGltf) return InvalidArgument("glTF assets are more than a mesh");
-  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder));
+  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder, {}));
+  const Vec3d origin = FarOrigin(surface.surface);
+  if (origin != Vec3d{}) {
+    LACERTA_ASSIGN_OR_RETURN(surface, ParseFile(bytes, format, folder, origin));
+  }
   FileMaterials materials = LoadMaterials(folder, &surface);
-  return ToFileMesh(std::move(surface), std::move(materials.materials), std::move(materials.images));
+  FileMesh mesh = ToFileMesh(std::move(surface), std::move(materials.materials), std::move(materials.images));
+  mesh.origin = origin;
+  return mesh;
 }
 
-StatusOr<TriangleMesh> ReadMeshFile(const std::string& path) {
+StatusOr<TriangleMesh> ReadMeshFile(const std::string& path, const Vec3d& origin) {
   LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(path));
   const StatusOr<MeshFormat> format = DetectMeshFormat(path, bytes);
   if (!format.ok()) return format.status().WithContext(path);
-  StatusOr<TriangleMesh> mesh = ParseMesh(bytes, format.value(), std::filesystem::path(path).parent_path().string());
+  StatusOr<TriangleMesh> mesh = ParseMesh(bytes, format.value(), std::filesystem::path(path).parent_path().string(), origin);
   if (!mesh.ok()) return mesh.status().WithContext(path);
   return mesh;
 }
 
-Status WriteMeshFile(const TriangleMesh& mesh, const std::string& path) {
+Status WriteMeshFile(const TriangleMesh& mesh, const std::string& path, const Vec3d& origin) {
   LACERTA_RETURN_IF_ERROR(CheckIndices(mesh).WithContext(path));
   const std::string extension = LowercaseExtension(path);
-  if (extension == ".ply") return WriteFileAtomically(path, FormatPly(mesh));
-  if (extension == ".obj") return WriteFileAtomically(path, FormatObj(mesh));
+  if (extension == ".ply") return WriteFileAtomically(path, FormatPly(mesh, origin));
+  if (extension == ".obj") return WriteFileAtomically(path, FormatObj(mesh, origin));
   if (extension == ".glb") {
-    LACERTA_ASSIGN_OR_RETURN(const Bytes glb, FormatPlainGlb(mesh, std::filesystem::path(path).stem().string()));
+    FileMesh file;
+    file.mesh.surface = mesh;
+    file.group_materials = {FileMesh::kNoMaterial};
+    file.origin = origin;
+    LACERTA_ASSIGN_OR_RETURN(const Bytes glb, FormatPlainGlb(file, std::filesystem::path(path).stem().string()));
     return WriteFileAtomically(path, glb);
   }
   return Unsupported(path + ": meshes are written as .ply, .obj or .glb; choose one of these extensions");

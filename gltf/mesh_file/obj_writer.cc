@@ -16,11 +16,18 @@ void AppendNumber(Number number, std::string* text) {
 
 }  // namespace
 
-Bytes FormatObj(const TriangleMesh& mesh) {
+Bytes FormatObj(const TriangleMesh& mesh, const Vec3d& origin) {
   std::string text;
+  const bool is_far = origin != Vec3d{};
   for (const Vec3f& position : mesh.positions) {
     text.push_back('v');
-    for (const float value : {position.x, position.y, position.z}) AppendNumber(value, &text);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (is_far) {
+        AppendNumber(position[axis] + origin[axis], &text);
+      } else {
+        AppendNumber(position[axis], &text);
+      }
+    }
     text.push_back('\n');
   }
   for (const Triangle& triangle : mesh.triangles) {

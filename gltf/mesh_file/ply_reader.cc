@@ -145,7 +145,7 @@ struct VertexAttributes {
 };
 
 template <typename Values>
-Status ReadVertices(const PlyElement& element, Values* values, TriangleMesh* mesh, VertexAttributes* attributes) {
+Status ReadVertices(const PlyElement& element, const Vec3d& origin, Values* values, TriangleMesh* mesh, VertexAttributes* attributes) {
   const VertexColumns columns(element);
   const char* const axes[3] = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
@@ -160,7 +160,7 @@ Status ReadVertices(const PlyElement& element, Values* values, TriangleMesh* mes
   for (uint64_t v = 0; v < element.count; ++v) {
     LACERTA_RETURN_IF_ERROR(ReadRow(element, values, [&](size_t property, double value) { row[property] = value; }));
     const auto [x, y, z] = columns.position;
-    LACERTA_RETURN_IF_ERROR(AppendPosition(row[static_cast<size_t>(x)], row[static_cast<size_t>(y)], row[static_cast<size_t>(z)], mesh));
+    LACERTA_RETURN_IF_ERROR(AppendPosition(row[static_cast<size_t>(x)], row[static_cast<size_t>(y)], row[static_cast<size_t>(z)], origin, mesh));
     if (columns.has_normals()) {
       for (const int property : columns.normal) attributes->normals.attribute.values.push_back(number(property));
     }
@@ -282,7 +282,7 @@ uint64_t LeastRowBytes(const PlyElement& element) {
 }
 
 template <typename Values>
-StatusOr<FileSurface> ReadBody(const PlyHeader& header, Values* values) {
+StatusOr<FileSurface> ReadBody(const PlyHeader& header, const Vec3d& origin, Values* values) {
   FileSurface surface;
   surface.textures = header.textures;
   TriangleMesh& mesh = surface.surface;
@@ -298,7 +298,7 @@ StatusOr<FileSurface> ReadBody(const PlyHeader& header, Values* values) {
                                        values->bytes_left() + Values::kSlack, "rows of element " + element.name));
     Status status;
     if (element.name == "vertex") {
-      status = ReadVertices(element, values, &mesh, &attributes);
+      status = ReadVertices(element, origin, values, &mesh, &attributes);
     } else if (element.name == "face") {
       status = ReadFaces(element, num_vertices, values, &surface, &wedges);
     } else if (element.name == "tristrips") {
@@ -326,15 +326,15 @@ StatusOr<FileSurface> ReadBody(const PlyHeader& header, Values* values) {
 
 }  // namespace
 
-StatusOr<FileSurface> ParsePly(Span<const uint8_t> bytes) {
+StatusOr<FileSurface> ParsePly(Span<const uint8_t> bytes, const Vec3d& origin) {
   LACERTA_ASSIGN_OR_RETURN(const PlyHeader header, ParsePlyHeader(bytes));
   if (header.encoding == PlyEncoding::kAscii) {
     const Span<const uint8_t> body = bytes.Subspan(header.size);
     AsciiValues values({reinterpret_cast<const char*>(body.data()), body.size()}, header.lines);
-    return ReadBody(header, &values);
+    return ReadBody(header, origin, &values);
   }
   BinaryValues values(bytes, header.size, header.encoding == PlyEncoding::kBigEndian);
-  return ReadBody(header, &values);
+  return ReadBody(header, origin, &values);
 }
 
 }  // namespace lacerta

@@ -1,4 +1,4 @@
-// One parser per format; what they promise is in lacerta/mesh_file.h (ParseMesh, ParseFileMesh).
+// One parser per format; what they promise is in lacerta/mesh_file.h (ParseMesh, ParseFileMesh). Positions are relative to `origin`.
 #ifndef LACERTA_MESH_FILE_READERS_H_
 #define LACERTA_MESH_FILE_READERS_H_
 
@@ -10,10 +10,10 @@
 
 namespace lacerta {
 
-StatusOr<FileSurface> ParsePly(Span<const uint8_t> bytes);
-StatusOr<FileSurface> ParseObj(Span<const uint8_t> bytes);
-StatusOr<FileSurface> ParseOff(Span<const uint8_t> bytes);
-StatusOr<TriangleMesh> ParseStl(Span<const uint8_t> bytes);
+StatusOr<FileSurface> ParsePly(Span<const uint8_t> bytes, const Vec3d& origin);
+StatusOr<FileSurface> ParseObj(Span<const uint8_t> bytes, const Vec3d& origin);
+StatusOr<FileSurface> ParseOff(Span<const uint8_t> bytes, const Vec3d& origin);
+StatusOr<FileSurface> ParseStl(Span<const uint8_t> bytes, const Vec3d& origin);
 
 }  // namespace lacerta
 

@@ -6,8 +6,8 @@
 
 namespace lacerta {
 
-Bytes FormatPly(const TriangleMesh& mesh);  // binary little endian
-Bytes FormatObj(const TriangleMesh& mesh);  // shortest decimals that give the same floats back
+Bytes FormatPly(const TriangleMesh& mesh, const Vec3d& origin = {});  // binary little endian
+Bytes FormatObj(const TriangleMesh& mesh, const Vec3d& origin = {});  // shortest decimals that give the same floats back
 
 }  // namespace lacerta
 

@@ -16,11 +16,12 @@ namespace lacerta {
 namespace {
 
 // A scene with one node that shows a mesh of these primitives.
-void AddScene(Json primitives, const std::string& name, GltfDocument* document) {
+void AddScene(Json primitives, const Vec3d& origin, const std::string& name, GltfDocument* document) {
   document->json["asset"] = {{"version", "2.0"}, {"generator", "Lacerta"}};
   document->json["scene"] = 0;
   document->json["scenes"] = Json::array({{{"nodes", {0}}}});
   Json node = {{"mesh", 0}};
+  if (origin != Vec3d{}) node["translation"] = {origin.x, origin.y, origin.z};
   Json mesh = {{"primitives", std::move(primitives)}};
   if (!name.empty()) node["name"] = mesh["name"] = name;
   document->json["nodes"] = Json::array({std::move(node)});
@@ -93,16 +94,16 @@ void AddImages(const FileMesh& mesh, GltfDocument* document) {
 
 }  // namespace
 
-GltfDocument SingleMeshDocument(const TriangleMesh& mesh, const std::string& name) {
+GltfDocument SingleMeshDocument(const TriangleMesh& mesh, const std::string& name, const Vec3d& origin) {
   GltfDocument document;
   Json primitive = AddPrimitive(PlainGeometry(mesh, false, &document), &document);
-  AddScene(Json::array({std::move(primitive)}), name, &document);
+  AddScene(Json::array({std::move(primitive)}), origin, name, &document);
   return document;
 }
 
 GltfDocument SingleMeshDocument(const FileMesh& mesh, const std::string& name) {
   const bool is_plain = mesh.mesh.attributes.empty() && mesh.group_materials == std::vector<uint32_t>{FileMesh::kNoMaterial};
-  if (is_plain) return SingleMeshDocument(mesh.mesh.surface, name);
+  if (is_plain) return SingleMeshDocument(mesh.mesh.surface, name, mesh.origin);
   GltfDocument document;
   Json primitives = Json::array();
   const std::vector<VertexSoup> soups = SplitIntoSoups(mesh.mesh, static_cast<uint32_t>(mesh.group_materials.size()));
@@ -112,7 +113,7 @@ GltfDocument SingleMeshDocument(const FileMesh& mesh, const std::string& name) {
     if (materials[g]) primitives.back()["material"] = *materials[g];
   }
   AddImages(mesh, &document);
-  AddScene(std::move(primitives), name, &document);
+  AddScene(std::move(primitives), mesh.origin, name, &document);
   return document;
 }
 

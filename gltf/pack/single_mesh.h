@@ -10,8 +10,8 @@
 
 namespace lacerta {
 
-// One scene with one node that shows the mesh in core glTF: positions and indices. `name` may be empty.
-GltfDocument SingleMeshDocument(const TriangleMesh& mesh, const std::string& name);
+// One scene with one node at `origin` that shows the mesh in core glTF: positions and indices. `name` may be empty.
+GltfDocument SingleMeshDocument(const TriangleMesh& mesh, const std::string& name, const Vec3d& origin = {});
 // With its attributes, materials and images; a primitive for each group.
 GltfDocument SingleMeshDocument(const FileMesh& mesh, const std::string& name);
 

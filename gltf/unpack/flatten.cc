@@ -43,10 +43,10 @@ StatusOr<TriangleMesh> ReadMesh(const GltfDocument& document, const StatusOr<Pro
   return all;
 }
 
-Status AppendInstance(const TriangleMesh& mesh, const Transform& transform, TriangleMesh* world) {
+Status AppendInstance(const TriangleMesh& mesh, const Transform& transform, const Vec3d& origin, TriangleMesh* world) {
   const auto offset = static_cast<uint32_t>(world->positions.size());
   for (const Vec3f& position : mesh.positions) {
-    const Vec3f moved = Vec3Cast<float>(Apply(transform, Vec3Cast<double>(position)));
+    const Vec3f moved = Vec3Cast<float>(Apply(transform, Vec3Cast<double>(position)) - origin);
     if (!std::isfinite(moved.x) || !std::isfinite(moved.y) || !std::isfinite(moved.z)) {
       return InvalidData("the transform of a node leads to positions that are not finite");
     }
@@ -79,7 +79,7 @@ StatusOr<FlattenResult> FlattenGltf(Span<const uint8_t> asset, const UnpackOptio
         result.mesh.triangles.size() + known->second.triangles.size() > options.limits.max_triangles) {
       return LimitExceeded("the instances of the scene have more vertices or triangles than the limit allows");
     }
-    LACERTA_RETURN_IF_ERROR(AppendInstance(known->second, instance.transform, &result.mesh));
+    LACERTA_RETURN_IF_ERROR(AppendInstance(known->second, instance.transform, options.origin, &result.mesh));
   }
   if (result.mesh.triangles.empty()) return InvalidData("the scene shows no triangles");
   return result;

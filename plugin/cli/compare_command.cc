@@ -40,8 +40,12 @@ void Print(const SurfaceDistance& distance, double diagonal, bool json) {
 }
 
 Status RunCompare(const CompareArguments& arguments) {
-  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh original, ReadMeshFile(arguments.original));
-  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh other, ReadMeshFile(arguments.other));
+  LACERTA_ASSIGN_OR_RETURN(TriangleMesh original, ReadMeshFile(arguments.original));
+  const Vec3d origin = FarOrigin(original);
+  if (origin != Vec3d{}) {
+    LACERTA_ASSIGN_OR_RETURN(original, ReadMeshFile(arguments.original, origin));
+  }
+  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh other, ReadMeshFile(arguments.other, origin));
   const StatusOr<SurfaceDistanceMeter> meter = SurfaceDistanceMeter::Create(original);
   if (!meter.ok()) return meter.status().WithContext(arguments.original);
   SurfaceDistanceOptions options;

@@ -108,16 +108,23 @@ StatusOr<TriangleMesh> ReadSurface(const PackArguments& arguments, std::vector<s
   LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadInput(path));
   StatusOr<MeshFormat> format = DetectMeshFormat(path, bytes);
   if (!format.ok()) return format.status().WithContext(path);
-  if (arguments.shape_only || format.value() == MeshFormat::kGltf) {
+  if (format.value() == MeshFormat::kGltf) {
     StatusOr<TriangleMesh> mesh = ParseMesh(bytes, format.value(), folder);
     return mesh.ok() ? std::move(mesh) : StatusOr<TriangleMesh>(mesh.status().WithContext(path));
   }
   StatusOr<FileMesh> mesh = ParseFileMesh(bytes, format.value(), folder);
   if (!mesh.ok()) return mesh.status().WithContext(path);
-  for (const MeshAttribute& attribute : mesh.value().mesh.attributes) {
-    notes->push_back(attribute.name + " is left aside: a bare stream holds the shape alone; pack into a .glb to keep it");
+  if (!arguments.shape_only) {
+    for (const MeshAttribute& attribute : mesh.value().mesh.attributes) {
+      notes->push_back(attribute.name + " is left aside: a bare stream holds the shape alone; pack into a .glb to keep it");
+    }
   }
-  return std::move(mesh.value().mesh.surface);
+  TriangleMesh surface = std::move(mesh.value().mesh.surface);
+  const Vec3d origin = mesh.value().origin;
+  if (origin == Vec3d{}) return surface;
+  notes->push_back("the mesh is far from zero, where a bare stream rounds its positions to floats; pack into a .glb to keep their digits");
+  for (Vec3f& position : surface.positions) position = Vec3Cast<float>(Vec3Cast<double>(position) + origin);
+  return surface;
 }
 
 StatusOr<FileOutcome> PackStream(const PackArguments& arguments, const EncodeOptions& options) {
@@ -151,11 +158,8 @@ StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& 
   if (!format.ok()) return format.status();
   if (format.value() == MeshFormat::kGltf) return PackGltf(bytes, options);
   const std::string name = std::filesystem::path(arguments.input).stem().string();
-  if (arguments.shape_only) {
-    LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ParseMesh(bytes, format.value(), options.folder));
-    return PackMesh(mesh, name, options);
-  }
-  LACERTA_ASSIGN_OR_RETURN(const FileMesh mesh, ParseFileMesh(bytes, format.value(), options.folder));
+  LACERTA_ASSIGN_OR_RETURN(FileMesh mesh, ParseFileMesh(bytes, format.value(), options.folder));
+  if (arguments.shape_only) mesh = ShapeOf(std::move(mesh));
   return PackMesh(mesh, name, options);
 }
 

@@ -29,8 +29,8 @@ struct Unpacked {
   std::vector<std::string> notes;
 };
 
-StatusOr<Unpacked> WriteMesh(const TriangleMesh& mesh, std::vector<std::string> notes, const std::string& output) {
-  LACERTA_RETURN_IF_ERROR(WriteMeshFile(mesh, output));
+StatusOr<Unpacked> WriteMesh(const TriangleMesh& mesh, const Vec3d& origin, std::vector<std::string> notes, const std::string& output) {
+  LACERTA_RETURN_IF_ERROR(WriteMeshFile(mesh, output, origin));
   return Unpacked{mesh.triangles.size(), std::move(notes)};
 }
 
@@ -40,7 +40,11 @@ StatusOr<Unpacked> UnpackAsset(const Bytes& bytes, const UnpackArguments& argume
   options.folder = std::filesystem::path(arguments.input).parent_path().string();
   if (std::filesystem::path(arguments.output).extension() != ".glb") {
     LACERTA_ASSIGN_OR_RETURN(FlattenResult flat, FlattenGltf(bytes, options));
-    return WriteMesh(flat.mesh, std::move(flat.notes), arguments.output);
+    options.origin = FarOrigin(flat.mesh);
+    if (options.origin != Vec3d{}) {
+      LACERTA_ASSIGN_OR_RETURN(flat, FlattenGltf(bytes, options));
+    }
+    return WriteMesh(flat.mesh, options.origin, std::move(flat.notes), arguments.output);
   }
   LACERTA_ASSIGN_OR_RETURN(UnpackResult result, UnpackGltf(bytes, options));
   LACERTA_RETURN_IF_ERROR(WriteFileAtomically(arguments.output, result.glb));
@@ -55,7 +59,7 @@ StatusOr<Unpacked> UnpackStream(const Bytes& bytes, const UnpackArguments& argum
   if (!decoded.refinement.ok()) {
     notes.push_back("decoded to level " + std::to_string(decoded.level) + " only: " + decoded.refinement.message());
   }
-  return WriteMesh(decoded.mesh, std::move(notes), arguments.output);
+  return WriteMesh(decoded.mesh, Vec3d{}, std::move(notes), arguments.output);
 }
 
 StatusOr<Unpacked> Unpack(const UnpackArguments& arguments) {

@@ -37,11 +37,15 @@ struct FileMesh {
   // TEXCOORD_0 (from the upper left corner, as in glTF), NORMAL (of unit length) and COLOR_0 (linear, 3 or 4 components), whatever the file
   // has of them. A group is what shares a material and has the same attributes. Positions are as in the file, not welded.
   AttributedMesh mesh;
+  Vec3d origin = {};                      // added to all positions
   std::vector<uint32_t> group_materials;  // of each group: of `materials`, or kNoMaterial
   std::vector<FileMaterial> materials;
   std::vector<FileImage> images;
   std::vector<std::string> notes;  // what was left aside, and why
 };
+
+// The same without all that lies on the surface.
+FileMesh ShapeOf(FileMesh mesh);
 
 }  // namespace lacerta
 

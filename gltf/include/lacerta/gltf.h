@@ -125,6 +125,7 @@ struct UnpackOptions {
   std::optional<int> level;  // stop there; empty: as far as the data goes
   std::string folder;
   DecodeLimits limits;
+  Vec3d origin = {};  // of FlattenGltf: positions are relative to it
 };
 
 // A progressive primitive as read.

@@ -30,21 +30,27 @@ StatusOr<MeshFormat> DetectMeshFormat(const std::string& path, Span<const uint8_
 // are refused with the index of the vertex, faces with fewer than three corners or an index out of range with that of
 // the face. `folder` is where the buffers of a .gltf are looked for; no other format uses it. Fails with kInvalidData,
 // naming line or byte offset, or kUnsupported.
-StatusOr<TriangleMesh> ParseMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder = "");
+// Positions are relative to `origin`, which is taken off before they are rounded to floats.
+StatusOr<TriangleMesh> ParseMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder = "", const Vec3d& origin = {});
+
+// A point near the middle of a mesh that is too far from zero for floats (over 16 diagonals), as in coordinates of a country: relative to it
+// positions keep their digits. Zero for all others.
+Vec3d FarOrigin(const TriangleMesh& mesh);
 
 // The same with what .obj and .ply files lay on the surface: texture coordinates, normals, colors; of .obj the materials of .mtl files and
 // their textures, of .ply the textures of `comment TextureFile`, all read from `folder` and nowhere else (empty: the working directory). What
-// cannot be used is left aside with a note, and never in the way of the surface. Other formats: the surface alone. kGltf is not for here.
+// cannot be used is left aside with a note, and never in the way of the surface. Positions are relative to their FarOrigin. Other formats: the surface alone. kGltf is not for here.
 StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder);
 
 // Reads a file of any of the formats above. Messages begin with `path`. Fails with kNotFound or kIoError besides what
 // ParseMesh returns.
-StatusOr<TriangleMesh> ReadMeshFile(const std::string& path);
+StatusOr<TriangleMesh> ReadMeshFile(const std::string& path, const Vec3d& origin = {});
 
 // Writes .ply (binary little endian), .obj or .glb (plain core glTF with smooth normals left to the viewer), chosen by
 // the extension of `path`. The file appears under its name only when it is complete. Fails with kUnsupported on another
-// extension, kInvalidArgument on an index out of range, kIoError.
-Status WriteMeshFile(const TriangleMesh& mesh, const std::string& path);
+// extension, kInvalidArgument on an index out of range, kIoError. `origin` is added to all positions: as numbers of 64 bits in .ply, as the
+// translation of the node in .glb.
+Status WriteMeshFile(const TriangleMesh& mesh, const std::string& path, const Vec3d& origin = {});
 
 }  // namespace lacerta
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "gltf/test_assets.h"
 #include "gltf/test_bytes.h"
@@ -215,6 +216,48 @@ TEST_F(FileMaterials, ArriveInTheAsset) {
   EXPECT_EQ(json["materials"][primitives[2]["material"].get<size_t>()]["name"], "red wine");
   const Json& view = json["bufferViews"][json["images"][0]["bufferView"].get<size_t>()];
   EXPECT_EQ(view["byteLength"], file.images[0].bytes.size());
+}
+
+// As maps of a country have it: half a meter lies between neighboring floats.
+TEST(FileMesh, PositionsFarFromZeroKeepTheirDigits) {
+  const std::string vertices[] = {"431234.25 5412345.125 312.5", "431235.25 5412345.125 312.5", "431234.25 5412347.125 313.0625"};
+  std::string obj, ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+                         "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string off = "OFF\n3 1 0\n", stl = "solid\nfacet normal 0 0 1\nouter loop\n";
+  for (const std::string& vertex : vertices) {
+    obj += "v " + vertex + "\n";
+    ply += vertex + "\n";
+    off += vertex + "\n";
+    stl += "vertex " + vertex + "\n";
+  }
+  const std::pair<MeshFormat, std::string> files[] = {{MeshFormat::kObj, obj + "f 1 2 3\n"},
+                                                      {MeshFormat::kPly, ply + "3 0 1 2\n"},
+                                                      {MeshFormat::kOff, off + "3 0 1 2\n"},
+                                                      {MeshFormat::kStl, stl + "endloop\nendfacet\nendsolid\n"}};
+  for (const auto& [format, text] : files) {
+    const FileMesh file = Parse(text, format);
+    const std::vector<Vec3f>& positions = file.mesh.surface.positions;
+    ASSERT_EQ(positions.size(), 3u);
+    EXPECT_EQ(Vec3Cast<double>(positions[0]) + file.origin, (Vec3d{431234.25, 5412345.125, 312.5}));
+    EXPECT_EQ(Vec3Cast<double>(positions[2]) + file.origin, (Vec3d{431234.25, 5412347.125, 313.0625}));
+    EXPECT_LT(Norm(Vec3Cast<double>(positions[0])), 4);
+    EXPECT_EQ(ParseMesh(FromText(text), format).value().positions[1].x, 431235.25f);
+    // Out and in again, in every format that there is a writer for.
+    for (const char* extension : {".ply", ".obj", ".glb"}) {
+      const std::string path = ::testing::TempDir() + "/lacerta_far" + std::to_string(static_cast<int>(format)) + extension;
+      ASSERT_TRUE(WriteMeshFile(file.mesh.surface, path, file.origin).ok());
+      EXPECT_EQ(ReadMeshFile(path, file.origin).value().positions, positions) << path;
+      std::filesystem::remove(path);
+    }
+  }
+}
+
+TEST(FileMesh, WhatIsNearZeroHasNoOrigin) {
+  const auto origin = [](float x) { return FarOrigin({{{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}}, {{0, 1, 2}}}); };
+  EXPECT_EQ(origin(0), (Vec3d{0, 0, 0}));
+  EXPECT_EQ(origin(-20), (Vec3d{0, 0, 0}));
+  EXPECT_EQ(origin(23), (Vec3d{24, 1, 0}));
+  EXPECT_EQ(FarOrigin({}), (Vec3d{0, 0, 0}));
 }
 
 // The surface of a mesh without anything on it is stored as ever: a stream without attributes.
