@@ -93,7 +93,7 @@ void AddUnpackCommand(CLI::App* app, int* exit_code) {
   unpack->add_option("IN", arguments->input, "A .glb, .gltf or .drc file")->required();
   unpack
       ->add_option("-o,--output", arguments->output,
-                   "A .glb, .ply or .obj file; the latter two hold the default scene as one mesh")
+                   "A .glb, .ply or .obj file; the latter two hold the shape of the default scene as one mesh")
       ->required();
   unpack->add_option("--level", arguments->level, "Level to stop at, 0 = base (default: the finest)")
       ->check(CLI::NonNegativeNumber);
