@@ -11,6 +11,8 @@
 #include <optional>
 #include <utility>
 
+#include "draco/merge_values.h"
+
 namespace lacerta {
 namespace {
 
@@ -98,7 +100,7 @@ StatusOr<std::unique_ptr<draco::Mesh>> ToDraco(const Primitive& rounded, const D
         lattice != nullptr ? MarkedValues(data, *lattice, MarkOf(static_cast<size_t>(id))) : data.bytes;
     mesh->attribute(id)->buffer()->Write(0, bytes.data(), bytes.size());
   }
-  if (!mesh->DeduplicateAttributeValues()) return Unsupported("Draco refuses the attributes");
+  MergeEqualValues(mesh.get());
   mesh->DeduplicatePointIds();
   return mesh;
 }
