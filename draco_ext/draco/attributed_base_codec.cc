@@ -14,6 +14,7 @@
 
 #include "common/octahedral.h"
 #include "draco/base_weights.h"
+#include "draco/merge_values.h"
 #include "draco/mesh_conversion.h"
 #include "draco/stock_stream.h"
 
@@ -116,7 +117,7 @@ class GroupEncoder {
                                     .WithContext("attribute " + a.precision.name));
       }
     }
-    if (!mesh_.DeduplicateAttributeValues()) return Unsupported("Draco refuses the attributes of the base");
+    MergeEqualValues(&mesh_);
     mesh_.DeduplicatePointIds();
     Bytes best;
     for (const int method : {draco::MESH_EDGEBREAKER_STANDARD_ENCODING, draco::MESH_EDGEBREAKER_VALENCE_ENCODING}) {

@@ -33,19 +33,19 @@ LatticeMesh Round(const TriangleMesh& mesh, double step) {
   return result;
 }
 
-// As many as elsewhere in a crowd of 20, else as many as take as long, but enough to tell 0.2 dB.
-uint64_t SamplesFor(double crowding) {
-  constexpr double kMost = 200'000, kFewest = 2'000, kWithMost = 20;
-  return static_cast<uint64_t>(std::clamp(kMost * kWithMost / crowding, kFewest, kMost));
-}
-
 }  // namespace
+
+uint64_t SamplesInCrowd(double crowding, uint64_t most) {
+  constexpr double kFewest = 2'000, kWithMost = 20;
+  return static_cast<uint64_t>(std::clamp(static_cast<double>(most) * kWithMost / crowding, kFewest, static_cast<double>(most)));
+}
 
 StatusOr<ZeroLevelStream> CodeCrowdedInput(const TriangleMesh& mesh, double crowding, const SurfaceDistanceMeter& meter, const ResolvedTarget& target) {
   constexpr int kMostTries = 6;
+  constexpr uint64_t kMostSamples = 200'000;
   constexpr double kDecibels = 0.2;  // near enough to a PSNR
   const double finest = meter.diagonal() / (1 << 21), coarsest = meter.diagonal() / 4;
-  const SurfaceDistanceOptions samples = SurfaceDistanceOptions::RmsOnly(SamplesFor(crowding));
+  const SurfaceDistanceOptions samples = SurfaceDistanceOptions::RmsOnly(SamplesInCrowd(crowding, kMostSamples));
   // Rounding moves a corner by step / sqrt(12) along the normal, a point of the face by 1 / sqrt(2) of that. Halving the step gains 6 dB, and
   // takes a bit for each coordinate of vertices that Draco may have to repeat. Both are seen better from two tries.
   const double wanted = target.is_rate ? 0.97 * target.bytes : target.psnr + kDecibels / 2;

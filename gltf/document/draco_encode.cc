@@ -9,9 +9,9 @@
 #include <cstring>
 #include <memory>
 #include <optional>
-#include <string_view>
-#include <unordered_map>
 #include <utility>
+
+#include "draco/merge_values.h"
 
 namespace lacerta {
 namespace {
@@ -78,23 +78,6 @@ Bytes MarkedValues(const AccessorData& rounded, const Lattice& lattice, const st
   return bytes;
 }
 
-// Equal values once, in the order in which they first come, as Draco's own DeduplicateAttributeValues has it, whose hash of
-// bytes takes minutes for a million colors.
-void SetValues(const Bytes& bytes, size_t count, size_t size, draco::PointAttribute* attribute) {
-  std::unordered_map<std::string_view, uint32_t> known;
-  known.reserve(count);
-  attribute->SetExplicitMapping(count);
-  Bytes values;
-  for (size_t i = 0; i < count; ++i) {
-    const std::string_view value(reinterpret_cast<const char*>(bytes.data()) + i * size, size);
-    const auto [entry, is_new] = known.emplace(value, static_cast<uint32_t>(known.size()));
-    if (is_new) values.insert(values.end(), value.begin(), value.end());
-    attribute->SetPointMapEntry(draco::PointIndex(static_cast<uint32_t>(i)), draco::AttributeValueIndex(entry->second));
-  }
-  attribute->Resize(known.size());
-  attribute->buffer()->Write(0, values.data(), values.size());
-}
-
 StatusOr<std::unique_ptr<draco::Mesh>> ToDraco(const Primitive& rounded, const DracoPrecision& precision) {
   auto mesh = std::make_unique<draco::Mesh>();
   mesh->set_num_points(static_cast<uint32_t>(rounded.num_vertices));
@@ -115,8 +98,9 @@ StatusOr<std::unique_ptr<draco::Mesh>> ToDraco(const Primitive& rounded, const D
     const Lattice* lattice = LatticeOf(attribute, precision);
     const Bytes& bytes =
         lattice != nullptr ? MarkedValues(data, *lattice, MarkOf(static_cast<size_t>(id))) : data.bytes;
-    SetValues(bytes, static_cast<size_t>(data.count), size, mesh->attribute(id));
+    mesh->attribute(id)->buffer()->Write(0, bytes.data(), bytes.size());
   }
+  MergeEqualValues(mesh.get());
   mesh->DeduplicatePointIds();
   return mesh;
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "draco/crowded_input.h"
 #include "geometry/close_seams.h"
+#include "geometry/triangle_tree.h"
 #include "remesh/attributed_proxy.h"
 
 namespace lacerta {
@@ -14,6 +16,11 @@ constexpr double kUnseen = 0.05;
 
 constexpr uint64_t kSamples = 100'000;
 constexpr uint64_t kPoseSamples = 50'000;  // in each pose
+
+uint64_t SamplesOn(const TriangleMesh& surface) {
+  const double crowding = TriangleTree(surface).Crowding();
+  return crowding > kMostCrowding ? SamplesInCrowd(crowding, kSamples) : kSamples;
+}
 
 }  // namespace
 
@@ -43,6 +50,7 @@ FamilyMeter::FamilyMeter(std::vector<const Primitive*> primitives, double error,
     poses_.push_back(std::move(posed).value());
   }
   original_ = std::move(original).value();
+  num_samples_ = SamplesOn(original_.surface);
   meter_ = std::move(meter).value();
   targets_ = FamilyTargets(original_, error, targets, texel_side);
   // Errors are measured against what came in.
@@ -59,7 +67,7 @@ Status FamilyMeter::UseProxy() {
 StatusOr<SurfaceErrors> FamilyMeter::Measure(const std::vector<const Primitive*>& stored) const {
   LACERTA_ASSIGN_OR_RETURN(const AttributedMesh mesh,
                            ToAttributedMesh(stored, texels_per_unit_, OtherAttributes::kLeaveOut, skin_, custom_));
-  LACERTA_ASSIGN_OR_RETURN(SurfaceErrors errors, meter_->Measure(mesh, kSamples));
+  LACERTA_ASSIGN_OR_RETURN(SurfaceErrors errors, meter_->Measure(mesh, num_samples_));
   if (skin_ == nullptr) return errors;
   AttributeError& poses = errors.attributes[*IndexOf(kPosesName)];
   LACERTA_ASSIGN_OR_RETURN(poses.rms, WorstPose(stored));

@@ -78,6 +78,7 @@ class FamilyMeter {
   AttributedMesh original_;
   std::optional<AttributedMesh> proxy_;
   std::optional<SurfaceErrorMeter> meter_;
+  uint64_t num_samples_ = 0;  // that Measure takes
   std::vector<SurfaceDistanceMeter> poses_;  // of the skin's
   ErrorTargets targets_;
   bool leaves_out_ = false;

@@ -44,6 +44,14 @@ TEST_F(CrowdedInputTest, MeetsAPsnrWithAllTriangles) {
   }
 }
 
+TEST_F(CrowdedInputTest, FewerSamplesTakeNoLonger) {
+  for (const uint64_t most : {100'000u, 200'000u}) {
+    EXPECT_EQ(SamplesInCrowd(20.0, most), most);
+    EXPECT_EQ(SamplesInCrowd(200.0, most), most / 10);
+    EXPECT_EQ(SamplesInCrowd(1e6, most), 2'000u);
+  }
+}
+
 TEST_F(CrowdedInputTest, MeetsARate) {
   for (const double bytes : {1200.0, 1600.0}) {
     ResolvedTarget target;
