@@ -11,7 +11,7 @@ std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const Surfac
   constexpr uint64_t kSamples = 50'000;
   const size_t most_triangles = cleaned.triangles.size() / 2;
   if (options.fewest_triangles > most_triangles) return std::nullopt;
-  const double psnr = TypicalPsnr(target, options.fewest_triangles / 2);  // what bytes bring hardly depends on how dense the input is
+  const double psnr = TypicalPsnr(target, static_cast<double>(options.fewest_triangles) / 2);  // what bytes bring hardly depends on how dense the input is
   const double most_distance = options.share * DistanceOfPsnr(psnr, meter.diagonal());
   const SimplificationSequence sequence(cleaned);
   for (uint64_t n = options.fewest_triangles; n <= most_triangles; n *= 2) {
