@@ -112,16 +112,50 @@ void LeaveOutColorsBelowTextures(const std::vector<uint32_t>& triangle_materials
   if (!IsUsed(*colors)) file->mesh.attributes.erase(file->mesh.attributes.begin() + (colors - file->mesh.attributes.data()));
 }
 
+// The value that all faces have; empty where they do not.
+std::vector<float> TheOnlyValue(const MeshAttribute& attribute) {
+  const auto at = [&](uint32_t row) { return attribute.values.begin() + row * attribute.components; };
+  const uint32_t first = attribute.corners[0][0];
+  for (const Triangle& corners : attribute.corners) {
+    for (const uint32_t row : corners) {
+      if (row == kNone || first == kNone || !std::equal(at(row), at(row) + attribute.components, at(first))) return {};
+    }
+  }
+  return {at(first), at(first) + attribute.components};
+}
+
+// What is the same everywhere need not lie on the surface, which is stored the better without: one color of all vertices, as many programs write
+// it, is one of the material where there is no other, and white is none.
+void TakeOffWhatIsTheSameEverywhere(std::vector<uint32_t>* triangle_materials, FileMesh* file) {
+  std::vector<MeshAttribute> kept;
+  for (MeshAttribute& attribute : file->mesh.attributes) {
+    const std::vector<float> value = TheOnlyValue(attribute);
+    const bool is_color = attribute.kind == AttributeKind::kColor;
+    const bool is_white = std::all_of(value.begin(), value.end(), [](float component) { return component == 1; });
+    if (value.empty() || (is_color && !is_white && !file->materials.empty())) {
+      kept.push_back(std::move(attribute));
+    } else if (attribute.kind == AttributeKind::kTextureCoordinates) {
+      file->notes.push_back(attribute.name + " is left aside: it is the same everywhere");
+    } else if (is_color && !is_white) {
+      std::copy(value.begin(), value.end(), file->materials.emplace_back().base_color.begin());
+      triangle_materials->assign(file->mesh.surface.triangles.size(), 0);
+    } else if (!is_color) {
+      kept.push_back(std::move(attribute));
+    }
+  }
+  file->mesh.attributes = std::move(kept);
+}
+
 // One group for each material and set of attributes, in the order of their first faces.
 void GroupFaces(const std::vector<uint32_t>& triangle_materials, FileMesh* file) {
   AttributedMesh& mesh = file->mesh;
-  std::map<std::pair<uint32_t, std::vector<bool>>, uint32_t> groups;
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> groups;
   mesh.groups.reserve(mesh.surface.triangles.size());
   for (size_t f = 0; f < mesh.surface.triangles.size(); ++f) {
-    std::vector<bool> has;
-    for (const MeshAttribute& attribute : mesh.attributes) has.push_back(HasAll(attribute.corners[f]));
+    uint32_t has = 0;  // a bit for each attribute
+    for (size_t a = 0; a < mesh.attributes.size(); ++a) has |= static_cast<uint32_t>(HasAll(mesh.attributes[a].corners[f])) << a;
     const uint32_t material = triangle_materials.empty() ? FileMesh::kNoMaterial : triangle_materials[f];
-    const auto [group, is_new] = groups.emplace(std::make_pair(material, std::move(has)), static_cast<uint32_t>(groups.size()));
+    const auto [group, is_new] = groups.emplace(std::make_pair(material, has), static_cast<uint32_t>(groups.size()));
     if (is_new) file->group_materials.push_back(material);
     mesh.groups.push_back(group->second);
   }
@@ -170,6 +204,7 @@ FileMesh ToFileMesh(FileSurface surface, std::vector<FileMaterial> materials, st
     file.mesh.attributes.push_back(std::move(attribute));
   }
   LeaveOutColorsBelowTextures(surface.triangle_materials, &file);
+  TakeOffWhatIsTheSameEverywhere(&surface.triangle_materials, &file);
   GroupFaces(surface.triangle_materials, &file);
   return file;
 }

@@ -12,16 +12,16 @@
 namespace lacerta {
 namespace {
 
-uint64_t StoredBytes(const FamilyCandidate& candidate) {
-  uint64_t sum = 0;
+uint64_t StoredBytes(const FamilyContext& context, const FamilyCandidate& candidate) {
+  uint64_t sum = context.DracoJsonBytes();
   for (const DracoCandidate& member : candidate.members) {
-    sum += member.encoded.bytes.size() + kDracoJsonBytes + BytesOfTargets(member.targets);
+    sum += member.encoded.bytes.size() + BytesOfTargets(member.targets);
   }
   return sum;
 }
 
 // targets: of each member in the order of its decoded vertices; empty: none has any.
-FamilyCandidate ToCandidate(RoundedFamily rounded, std::vector<std::vector<MorphTarget>> targets) {
+FamilyCandidate ToCandidate(const FamilyContext& context, RoundedFamily rounded, std::vector<std::vector<MorphTarget>> targets) {
   FamilyCandidate candidate;
   for (size_t m = 0; m < rounded.members.size(); ++m) {
     DracoCandidate member;
@@ -32,7 +32,7 @@ FamilyCandidate ToCandidate(RoundedFamily rounded, std::vector<std::vector<Morph
     member.report.attributes = std::move(rounded.reports[m]);
     candidate.members.push_back(std::move(member));
   }
-  candidate.bytes = StoredBytes(candidate);
+  candidate.bytes = StoredBytes(context, candidate);
   return candidate;
 }
 
@@ -48,7 +48,7 @@ StatusOr<FamilyCandidate> ToCandidate(const FamilyContext& context, RoundedFamil
     if (!reordered.has_value()) return Unsupported("has morph targets that tell apart what its other attributes do not");
     targets.back() = std::move(*reordered);
   }
-  return ToCandidate(std::move(rounded), std::move(targets));
+  return ToCandidate(context, std::move(rounded), std::move(targets));
 }
 
 }  // namespace
@@ -69,10 +69,10 @@ StatusOr<FamilyCandidate> Simplified(const FamilyContext& context, const FamilyM
   if (context.HasTargets()) {
     LACERTA_ASSIGN_OR_RETURN(MorphedFamily simplified,
                              SimplifyMorphedFamily(meter, context.Targets(), context.scene->texel_side, bounds));
-    candidate = ToCandidate(std::move(simplified.rounded), std::move(simplified.targets));
+    candidate = ToCandidate(context, std::move(simplified.rounded), std::move(simplified.targets));
   } else {
     LACERTA_ASSIGN_OR_RETURN(RoundedFamily simplified, SimplifyFamily(meter, bounds));
-    candidate = ToCandidate(std::move(simplified), {});
+    candidate = ToCandidate(context, std::move(simplified), {});
   }
   for (size_t m = 0; m < candidate.members.size(); ++m) {
     candidate.members[m].report.reason =

@@ -13,9 +13,6 @@
 
 namespace lacerta {
 
-// JSON that KHR_draco_mesh_compression costs for one primitive.
-inline constexpr uint64_t kDracoJsonBytes = 150;
-
 // A primitive in Draco form, and what its report is to say then.
 struct DracoCandidate {
   DracoEncoded encoded;
@@ -26,7 +23,7 @@ struct DracoCandidate {
 // All members of a family in Draco form: parallel to Family::members.
 struct FamilyCandidate {
   std::vector<DracoCandidate> members;
-  uint64_t bytes = 0;  // with their JSON
+  uint64_t bytes = 0;  // with FamilyContext::DracoJsonBytes
 };
 
 // With all vertices, where that is no hopeless way to stay under `most_bytes`. Sets *everywhere to RoundedFamily's.

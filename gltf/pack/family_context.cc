@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pack/find_skin.h"
+#include "pack/morphs.h"
 #include "pack/texel_scale.h"
 
 namespace lacerta {
@@ -61,6 +62,29 @@ TexelScale FamilyContext::Scale() const {
     const Source& source = scene->sources[scene->families.families[family].members[member]];
     return TexelsPerUnit(*scene->document, source.places, set, scene->texel_side);
   };
+}
+
+uint64_t FamilyContext::BytesBefore() const {
+  uint64_t sum = 0;
+  for (const size_t member : members()) {
+    const Source& source = scene->sources[member];
+    sum += source.geometries.size() * (source.stored_bytes + BytesOfTargets(source.targets));
+  }
+  return sum;
+}
+
+uint64_t FamilyContext::DracoJsonBytes() const {
+  constexpr uint64_t kFirstPlace = 150, kFurtherPlace = 100;
+  uint64_t sum = 0;
+  for (const size_t member : members()) sum += kFirstPlace + kFurtherPlace * (scene->sources[member].places.size() - 1);
+  return sum;
+}
+
+uint64_t FamilyContext::ProgressiveJsonBytes() const {
+  constexpr uint64_t kStream = 350, kFurtherPlace = 50;
+  uint64_t sum = kStream;
+  for (const size_t member : members()) sum += kFurtherPlace * (scene->sources[member].places.size() - 1);
+  return sum;
 }
 
 }  // namespace lacerta

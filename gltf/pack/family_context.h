@@ -3,6 +3,7 @@
 #define LACERTA_PACK_FAMILY_CONTEXT_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct FamilyContext {
   std::vector<const std::vector<MorphTarget>*> Targets() const;  // of each member
   StatusOr<std::optional<Skin>> FindSkin() const;  // what moves the family; empty where nothing does
   TexelScale Scale() const;  // refers to the scene
+  uint64_t BytesBefore() const;    // of all members' data, as often as the asset holds it
+  uint64_t DracoJsonBytes() const;  // about what JSON KHR_draco_mesh_compression takes at all places that show the family
+  uint64_t ProgressiveJsonBytes() const;  // the same of LACERTA_mesh_progressive beside it
 };
 
 }  // namespace lacerta

@@ -16,9 +16,6 @@
 namespace lacerta {
 namespace {
 
-// JSON of LACERTA_mesh_progressive beyond that of KHR_draco_mesh_compression.
-constexpr uint64_t kProgressiveJsonBytes = 350;
-
 bool IsRate(const EncodeTarget& target) {
   return target.kind == EncodeTarget::Kind::kBytes || target.kind == EncodeTarget::Kind::kBitsPerVertex;
 }
@@ -44,7 +41,7 @@ bool PlanStream(const FamilyContext& context, const FamilyMeter& meter, uint64_t
   if (!options.simplify && levels != LevelChoice::kAlways) return false;
   size_t most_bytes = std::numeric_limits<size_t>::max();
   if (levels != LevelChoice::kAlways) {
-    const uint64_t json = kDracoJsonBytes * plans->size() + kProgressiveJsonBytes;
+    const uint64_t json = context.DracoJsonBytes() + context.ProgressiveJsonBytes();
     if (least <= json) return false;
     most_bytes = least - json;
   }
@@ -73,13 +70,23 @@ bool PlanStream(const FamilyContext& context, const FamilyMeter& meter, uint64_t
   return true;
 }
 
+// Small surfaces, or such as many nodes show: the description would take more than is saved.
+void LeaveAsItIs(const FamilyContext& context, uint64_t stream_bytes, PrimitivePlan* plan) {
+  *plan = UntouchedPlan(*context.scene, context.members()[0]);
+  plan->weight = context.scene->families.families[context.family].weight;
+  plan->report.reason = "compressed it would be larger (" + std::to_string(stream_bytes) + " bytes with its description)";
+}
+
 // The smallest of what there is, Draco with all vertices and Draco of a simplified surface, for a whole family: one that
 // stayed as it is would come apart from neighbors that are rounded.
 void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plans) {
   const bool is_stream = (*plans)[0].progressive.has_value();
-  uint64_t least = 0;
-  for (const PrimitivePlan& plan : *plans) least += plan.report.bytes_before;
-  if (is_stream) least = std::min(least, (*plans)[0].progressive->stream.size() + kDracoJsonBytes + kProgressiveJsonBytes);
+  uint64_t least = context.BytesBefore();
+  if (is_stream) {
+    const uint64_t stream_bytes = (*plans)[0].progressive->stream.size() + context.DracoJsonBytes() + context.ProgressiveJsonBytes();
+    if (stream_bytes >= least) return LeaveAsItIs(context, stream_bytes, &plans->front());
+    least = stream_bytes;
+  }
   std::vector<double> everywhere;
   const StatusOr<std::optional<Skin>> skin = context.FindSkin();
   FamilyMeter meter(context.Primitives(), context.Error(), context.options->attributes, context.scene->texel_side,

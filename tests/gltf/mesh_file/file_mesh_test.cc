@@ -86,12 +86,28 @@ TEST(FileMesh, WhatCannotBeUsedIsLeftAsideWithANoteAndTheSurfaceStays) {
 }
 
 TEST(FileMesh, ColorsAreMadeLinear) {
-  const FileMesh obj = Obj("v 0 0 0 0 0.5 1\nv 1 0 0 0 0.5 1\nv 0 1 0 0 0.5 1\nf 1 2 3\n");
-  const FileMesh bytes = Obj("v 0 0 0 0 127.5 255\nv 1 0 0 0 127.5 255\nv 0 1 0 0 127.5 255\nf 1 2 3\n");
+  const FileMesh obj = Obj("v 0 0 0 0 0.5 1\nv 1 0 0 0 0.5 1\nv 0 1 0 1 0 1\nf 1 2 3\n");
+  const FileMesh bytes = Obj("v 0 0 0 0 127.5 255\nv 1 0 0 0 127.5 255\nv 0 1 0 255 0 255\nf 1 2 3\n");
   for (const FileMesh* file : {&obj, &bytes}) {
     EXPECT_THAT(Names(*file), ElementsAre("COLOR_0"));
     EXPECT_THAT(At(*file, 0, 0, 1), ElementsAre(0, FloatNear(0.21404f, 1e-5f), 1));
   }
+}
+
+TEST(FileMesh, WhatIsTheSameEverywhereIsTakenOff) {
+  const auto square = [](const std::string& color) {
+    return Obj("v 0 0 0 " + color + "\nv 1 0 0 " + color + "\nv 1 1 0 " + color + "\nvt 0.5 0.5\nf 1/1 2/1 3/1\n");
+  };
+  const FileMesh white = square("1 1 1"), gray = square("0.5 0.5 0.5");
+  for (const FileMesh* file : {&white, &gray}) {
+    EXPECT_THAT(Names(*file), IsEmpty());
+    EXPECT_THAT(file->notes, ElementsAre(HasSubstr("TEXCOORD_0 is left aside: it is the same everywhere")));
+  }
+  EXPECT_THAT(white.materials, IsEmpty());
+  EXPECT_THAT(white.group_materials, ElementsAre(FileMesh::kNoMaterial));
+  ASSERT_EQ(gray.materials.size(), 1u);
+  EXPECT_NEAR(gray.materials[0].base_color[1], 0.21404, 1e-5);
+  EXPECT_THAT(gray.group_materials, ElementsAre(0));
 }
 
 std::string PlyText(const std::string& properties, const std::string& face_properties, const std::string& body, const std::string& comment = "") {
@@ -103,19 +119,19 @@ TEST(FileMesh, PlyHasWhatItsVerticesHave) {
   const std::string properties =
       "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
       "property uchar alpha\nproperty float s\nproperty float t\n";
-  const auto body = [](const char* alpha) {
-    const std::string rest = std::string(" 0 0 3 255 0 188 ") + alpha + " 0.5 0.25\n";
-    return "0 0 0" + rest + "1 0 0" + rest + "1 1 0" + rest + "0 1 0" + rest + "4 0 1 2 3\n";
+  const auto body = [](const std::string& alpha) {
+    const std::string rest = " 0 0 3 255 0 188 " + alpha + " 0.5 0.25\n";
+    return "0 0 0" + rest + "1 0 0" + rest + "1 1 0" + rest + "0 1 0 0 0 3 0 0 0 " + alpha + " 0 0\n4 0 1 2 3\n";
   };
   const FileMesh opaque = Ply(PlyText(properties, "", body("255"))), clear = Ply(PlyText(properties, "", body("51")));
   for (const FileMesh* file : {&opaque, &clear}) {
     EXPECT_THAT(Names(*file), ElementsAre("TEXCOORD_0", "NORMAL", "COLOR_0"));
     EXPECT_TRUE(CheckAttributedMesh(file->mesh).ok());
-    EXPECT_THAT(At(*file, 0, 1, 2), ElementsAre(0.5f, 0.75f));
-    EXPECT_THAT(At(*file, 1, 1, 2), ElementsAre(0, 0, 1));
+    EXPECT_THAT(At(*file, 0, 1, 1), ElementsAre(0.5f, 0.75f));
+    EXPECT_THAT(At(*file, 1, 1, 1), ElementsAre(0, 0, 1));
   }
-  EXPECT_THAT(At(opaque, 2, 1, 2), ElementsAre(1, 0, FloatNear(0.50289f, 1e-5f)));
-  EXPECT_THAT(At(clear, 2, 1, 2), ElementsAre(1, 0, FloatNear(0.50289f, 1e-5f), FloatNear(0.2f, 1e-6f)));
+  EXPECT_THAT(At(opaque, 2, 1, 1), ElementsAre(1, 0, FloatNear(0.50289f, 1e-5f)));
+  EXPECT_THAT(At(clear, 2, 1, 1), ElementsAre(1, 0, FloatNear(0.50289f, 1e-5f), FloatNear(0.2f, 1e-6f)));
 }
 
 TEST(FileMesh, PlyHasTextureCoordinatesOfFaces) {

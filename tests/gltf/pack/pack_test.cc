@@ -322,6 +322,32 @@ TEST(Pack, SharedAccessorsAndInstances) {
             ReadAccessor(ParseGltf(glb, "").value(), 0).value().bytes);
 }
 
+// A ball is worth compressing, but not a box, nor a surface whose every place would need a description that takes more than it saves.
+TEST(Pack, NothingGrowsByItsDescription) {
+  const struct {
+    TriangleMesh mesh;
+    int places;
+    bool is_compressed;
+  } kCases[] = {{WavySphere(3, 4), 1, false}, {WavySphere(13, 22), 1, true}, {WavySphere(13, 22), 2, true}, {WavySphere(13, 22), 60, false}};
+  for (const auto& a_case : kCases) {
+    AssetBuilder builder;
+    const Json primitive = builder.Primitive(a_case.mesh);
+    for (int i = 0; i < a_case.places; ++i) builder.AddMesh("shared", Json::array({primitive}));
+    PackOptions options;
+    options.encode.target = {EncodeTarget::Kind::kPsnr, 45.0};
+    const Bytes before = builder.Glb();
+    const auto packed = PackGltf(before, options);
+    ASSERT_TRUE(packed.ok()) << packed.status().message();
+    ASSERT_EQ(packed.value().report.primitives.size(), 1u);
+    const PrimitiveReport& report = packed.value().report.primitives[0];
+    EXPECT_EQ(report.storage != PrimitiveStorage::kUntouched, a_case.is_compressed) << a_case.mesh.triangles.size() << ' ' << a_case.places;
+    EXPECT_LE(packed.value().glb.size(), before.size());
+    if (!a_case.is_compressed) {
+      EXPECT_THAT(report.reason, HasSubstr("compressed it would be larger"));
+    }
+  }
+}
+
 TEST(Pack, BadInputIsNamed) {
   AssetBuilder builder;
   builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(13, 22))}));
