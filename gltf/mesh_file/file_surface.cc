@@ -132,15 +132,15 @@ void TakeOffWhatIsTheSameEverywhere(std::vector<uint32_t>* triangle_materials, F
     const std::vector<float> value = TheOnlyValue(attribute);
     const bool is_color = attribute.kind == AttributeKind::kColor;
     const bool is_white = std::all_of(value.begin(), value.end(), [](float component) { return component == 1; });
-    if (value.empty() || (is_color && !is_white && !file->materials.empty())) {
+    const bool is_idle = is_color ? is_white || file->materials.empty()
+                                  : attribute.kind == AttributeKind::kTextureCoordinates && file->images.empty();
+    if (value.empty() || !is_idle) {
       kept.push_back(std::move(attribute));
-    } else if (attribute.kind == AttributeKind::kTextureCoordinates) {
+    } else if (!is_color) {
       file->notes.push_back(attribute.name + " is left aside: it is the same everywhere");
-    } else if (is_color && !is_white) {
+    } else if (!is_white) {
       std::copy(value.begin(), value.end(), file->materials.emplace_back().base_color.begin());
       triangle_materials->assign(file->mesh.surface.triangles.size(), 0);
-    } else if (!is_color) {
-      kept.push_back(std::move(attribute));
     }
   }
   file->mesh.attributes = std::move(kept);
