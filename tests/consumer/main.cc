@@ -11,6 +11,7 @@ int main() {
       {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
   lacerta::PackOptions options;
   options.encode.target = {lacerta::EncodeTarget::Kind::kPsnr, 50.0};
+  options.encode.levels = lacerta::LevelChoice::kAlways;  // an octahedron is smaller as it is
   const auto packed = lacerta::PackMesh(octahedron, "octahedron", options);
   if (!packed.ok()) {
     std::fprintf(stderr, "%s\n", packed.status().message().c_str());
