@@ -57,6 +57,8 @@ std::string DecodePercent(std::string_view uri) {
 
 }  // namespace
 
+bool LeavesFolder(const std::filesystem::path& path) { return path.is_absolute() || path.empty() || *path.begin() == ".."; }
+
 StatusOr<Bytes> LoadUri(std::string_view uri, const std::string& folder) {
   if (uri.substr(0, 5) == "data:") {
     const size_t comma = uri.find(',');
@@ -67,8 +69,7 @@ StatusOr<Bytes> LoadUri(std::string_view uri, const std::string& folder) {
   }
   const std::filesystem::path relative = DecodePercent(uri);
   const std::filesystem::path normal = relative.lexically_normal();
-  const bool leaves = normal.is_absolute() || normal.empty() || *normal.begin() == "..";
-  if (leaves || uri.find(':') != uri.npos || relative.string().find('\0') != std::string::npos) {
+  if (LeavesFolder(normal) || uri.find(':') != uri.npos || relative.string().find('\0') != std::string::npos) {
     return Unsupported("the URI \"" + std::string(uri.substr(0, 80)) +
                        "\" does not name a file in the folder of the asset");
   }

@@ -2,6 +2,7 @@
 #ifndef LACERTA_DOCUMENT_URI_H_
 #define LACERTA_DOCUMENT_URI_H_
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,9 @@
 #include "lacerta/status.h"
 
 namespace lacerta {
+
+// Whether a path, in its lexically normal form, names something outside the folder that it is relative to, or nothing.
+bool LeavesFolder(const std::filesystem::path& path);
 
 // Decodes a base64 "data:" URI, or reads the file that a relative URI names inside `folder`. Absolute paths, other
 // schemes and paths that leave the folder are refused with kUnsupported: an asset must not fetch what its user did not

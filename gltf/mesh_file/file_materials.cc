@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "document/uri.h"
 #include "lacerta/file_io.h"
 #include "mesh_file/text_scanner.h"
 
@@ -26,8 +27,7 @@ std::filesystem::path PathOf(std::string path) {
 StatusOr<Bytes> ReadInFolder(const std::string& path, const std::string& folder) {
   const std::filesystem::path relative = PathOf(path);
   if (path.find('\0') != std::string::npos || !relative.has_filename()) return NotFound("\"" + path + "\" names no file");
-  const bool leaves = relative.is_absolute() || *relative.begin() == ".." || path.find(':') != std::string::npos;
-  if (!leaves) {
+  if (!LeavesFolder(relative) && path.find(':') == std::string::npos) {
     StatusOr<Bytes> bytes = ReadFile((std::filesystem::path(folder) / relative).string());
     if (bytes.ok()) return bytes;
   }

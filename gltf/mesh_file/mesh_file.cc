@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "document/draco_primitive.h"
+#include "geometry/bounding_box.h"
 #include "lacerta/codec.h"
 #include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
@@ -55,10 +56,14 @@ StatusOr<FileSurface> ParseDrc(Span<const uint8_t> bytes, const Vec3d& origin) {
   FileSurface surface;
   surface.surface = std::move(decoded.mesh);
   for (Vec3f& position : surface.surface.positions) position = Vec3Cast<float>(Vec3Cast<double>(position) - origin);
-  const StatusOr<std::vector<std::string>> kinds = DracoAttributeKinds(bytes);  // of streams that a stock decoder reads
-  if (!kinds.ok()) return surface;
-  for (const std::string& kind : kinds.value()) surface.notes.push_back(kind + " of the Draco stream is left aside");
   return surface;
+}
+
+// What a stock decoder finds besides positions; it decodes the stream once more.
+void NoteDracoAttributes(Span<const uint8_t> bytes, std::vector<std::string>* notes) {
+  const StatusOr<std::vector<std::string>> kinds = DracoAttributeKinds(bytes);
+  if (!kinds.ok()) return;  // of the custom form
+  for (const std::string& kind : kinds.value()) notes->push_back(kind + " of the Draco stream is left aside");
 }
 
 StatusOr<FileSurface> ParseFile(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, const Vec3d& origin) {
@@ -114,13 +119,8 @@ StatusOr<MeshFormat> DetectMeshFormat(const std::string& path, Span<const uint8_
 Vec3d FarOrigin(const TriangleMesh& mesh) {
   constexpr double kFar = 16;  // diagonals: floats are off by less than 125 dB up to there
   if (mesh.positions.empty()) return {};
-  Vec3d low = Vec3Cast<double>(mesh.positions[0]), high = low;
-  for (const Vec3f& position : mesh.positions) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min<double>(low[axis], position[axis]);
-      high[axis] = std::max<double>(high[axis], position[axis]);
-    }
-  }
+  const BoundingBox box = BoundsOf(mesh.positions);
+  const Vec3d low = Vec3Cast<double>(box.low), high = Vec3Cast<double>(box.high);
   const double diagonal = Norm(high - low);
   const auto farthest = [](const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
   if (std::max(farthest(low), farthest(high)) <= kFar * diagonal) return {};
@@ -143,6 +143,7 @@ StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, c
   if (origin != Vec3d{}) {
     LACERTA_ASSIGN_OR_RETURN(surface, ParseFile(bytes, format, folder, origin));
   }
+  if (format == MeshFormat::kDrc) NoteDracoAttributes(bytes, &surface.notes);
   FileMaterials materials = LoadMaterials(folder, &surface);
   FileMesh mesh = ToFileMesh(std::move(surface), std::move(materials.materials), std::move(materials.images));
   mesh.origin = origin;
@@ -164,11 +165,7 @@ Status WriteMeshFile(const TriangleMesh& mesh, const std::string& path, const Ve
   if (extension == ".ply") return WriteFileAtomically(path, FormatPly(mesh, origin));
   if (extension == ".obj") return WriteFileAtomically(path, FormatObj(mesh, origin));
   if (extension == ".glb") {
-    FileMesh file;
-    file.mesh.surface = mesh;
-    file.group_materials = {FileMesh::kNoMaterial};
-    file.origin = origin;
-    LACERTA_ASSIGN_OR_RETURN(const Bytes glb, FormatPlainGlb(file, std::filesystem::path(path).stem().string()));
+    LACERTA_ASSIGN_OR_RETURN(const Bytes glb, FormatPlainGlb(mesh, std::filesystem::path(path).stem().string(), origin));
     return WriteFileAtomically(path, glb);
   }
   return Unsupported(path + ": meshes are written as .ply, .obj or .glb; choose one of these extensions");

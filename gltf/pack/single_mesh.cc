@@ -92,6 +92,11 @@ void AddImages(const FileMesh& mesh, GltfDocument* document) {
   }
 }
 
+StatusOr<Bytes> Format(GltfDocument document) {
+  LACERTA_RETURN_IF_ERROR(MergeBuffers(&document));
+  return FormatGlb(document);
+}
+
 }  // namespace
 
 GltfDocument SingleMeshDocument(const TriangleMesh& mesh, const std::string& name, const Vec3d& origin) {
@@ -117,16 +122,10 @@ GltfDocument SingleMeshDocument(const FileMesh& mesh, const std::string& name) {
   return document;
 }
 
-StatusOr<Bytes> FormatPlainGlb(const TriangleMesh& mesh, const std::string& name) {
-  GltfDocument document = SingleMeshDocument(mesh, name);
-  LACERTA_RETURN_IF_ERROR(MergeBuffers(&document));
-  return FormatGlb(document);
+StatusOr<Bytes> FormatPlainGlb(const TriangleMesh& mesh, const std::string& name, const Vec3d& origin) {
+  return Format(SingleMeshDocument(mesh, name, origin));
 }
 
-StatusOr<Bytes> FormatPlainGlb(const FileMesh& mesh, const std::string& name) {
-  GltfDocument document = SingleMeshDocument(mesh, name);
-  LACERTA_RETURN_IF_ERROR(MergeBuffers(&document));
-  return FormatGlb(document);
-}
+StatusOr<Bytes> FormatPlainGlb(const FileMesh& mesh, const std::string& name) { return Format(SingleMeshDocument(mesh, name)); }
 
 }  // namespace lacerta

@@ -118,7 +118,7 @@ StatusOr<PackResult> PackMesh(const TriangleMesh& mesh, const std::string& name,
 StatusOr<PackResult> PackMesh(const FileMesh& mesh, const std::string& name, const PackOptions& options);
 
 // A GLB of one mesh in core glTF, uncompressed. Triangle indices must be below #V. Fails with kUnsupported beyond 4 GB.
-StatusOr<Bytes> FormatPlainGlb(const TriangleMesh& mesh, const std::string& name);
+StatusOr<Bytes> FormatPlainGlb(const TriangleMesh& mesh, const std::string& name, const Vec3d& origin = {});
 StatusOr<Bytes> FormatPlainGlb(const FileMesh& mesh, const std::string& name);
 
 struct UnpackOptions {
