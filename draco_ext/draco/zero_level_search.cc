@@ -72,8 +72,19 @@ class ZeroLevelSearch {
     return best.meets ? static_cast<double>(best.coding.bytes) : std::numeric_limits<double>::infinity();
   }
 
-  // The stream of the best size.
-  StatusOr<ZeroLevelStream> Finish() { return Finish(tried_.at(best_)); }
+  // The stream of the best size, or where that misses the PSNR after all, of a larger one that meets it: few samples judge sizes, and may
+  // overlook a small part of the surface that is far off.
+  StatusOr<ZeroLevelStream> Finish() {
+    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, Finish(tried_.at(best_)));
+    while (!target_.is_rate && !stream.meets_target && best_ < mesh_.triangles.size()) {
+      LACERTA_RETURN_IF_ERROR(Grow(Square(stream.distance)));
+      const int measurements = stream.measurements;
+      LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream larger, Finish(tried_.at(best_)));
+      if (IsBetter(OutcomeOf(larger), OutcomeOf(stream), target_)) stream = std::move(larger);
+      stream.measurements = measurements + larger.measurements;
+    }
+    return stream;
+  }
 
  private:
   static constexpr size_t kMostSamples = 80000;
@@ -82,6 +93,8 @@ class ZeroLevelSearch {
   static constexpr int kMostMoves = 4;
   // Against what there is: the first size tried is not yet the best, and the last steps gain some bytes too.
   static constexpr double kHopeless = 1.4, kHopelessAtBest = 1.15;
+  // The squared distance falls by about 5 dB as triangles double: by this power of their number.
+  static constexpr double kFall = 1.75;
 
   struct Trial {
     std::shared_ptr<ZeroLevelCandidate> candidate;
@@ -109,10 +122,18 @@ class ZeroLevelSearch {
     return Status();
   }
 
-  // Where the fit takes the share of the distance that it takes at the best sizes of most surfaces; the distance falls by about
-  // 5 dB as triangles double.
+  // Goes on from the best size, of this squared distance, to one that may well meet the PSNR.
+  Status Grow(double distortion) {
+    const double ratio = std::clamp(std::pow(distortion / distortion_, 1 / kFall), kNarrowRatio, 2.0);
+    const uint32_t larger = std::max(Clamped(best_ * ratio), Clamped(best_ + 1.0));
+    LACERTA_RETURN_IF_ERROR(Look(larger));
+    best_ = larger;
+    return Status();
+  }
+
+  // Where the fit takes the share of the distance that it takes at the best sizes of most surfaces.
   uint32_t SizeByShare(const Trial& trial) const {
-    constexpr double kBestShare = 0.78, kFall = 1.75;
+    constexpr double kBestShare = 0.78;
     const double ratio = std::pow(trial.candidate->fit_distortion() / (kBestShare * distortion_), 1 / kFall);
     return Clamped(static_cast<double>(trial.candidate->num_triangles()) * std::clamp(ratio, 0.4, 2.5));
   }
@@ -216,10 +237,10 @@ class ZeroLevelSearch {
     ZeroLevelCandidate& candidate = *trial.candidate;
     constexpr int kFitRounds = 2;
     const size_t triangles = candidate.num_triangles();
-    const int usual_tries = triangles < 2000 ? 12 : triangles < 5000 ? 6 : 4;
+    const int usual_tries = triangles < 2000 ? 8 : triangles < 5000 ? 6 : 4;
     const int num_tries = std::max(2, static_cast<int>(std::lround(tries_ * usual_tries)));
     const int descent_rounds = triangles < 5000 ? 3 : 2;
-    TakeSamples(8, std::max<size_t>(triangles, std::min<size_t>(mesh_.triangles.size(), 2000)));
+    TakeSamples(8, std::max(triangles, FewestSamples(mesh_)));
     const double added = target_.is_rate ? candidate.fit_distortion() : distortion_ - candidate.fit_distortion();
     candidate.FitForRate(std::max(added, 0.05 * candidate.fit_distortion()), kFitRounds);
     double step = trial.coding.step;

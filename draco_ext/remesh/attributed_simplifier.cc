@@ -70,16 +70,20 @@ void AttributedSimplifier::AddQuadrics() {
   edge_weight_ = 1e-9 * area / static_cast<double>(triangles_.size());
 }
 
-// Planes through the curve edges, upright on their triangles.
+// Planes through the curve edges, upright on their triangles: on both sides, or twice on the one side that an open border has.
 void AttributedSimplifier::AddCurveQuadrics() {
-  for (uint32_t corner = 0; corner < 3 * triangles_.size(); ++corner) {
-    if ((curve_edges_[corner / 3] >> (corner % 3) & 1) == 0) continue;
-    const uint32_t u = StartOfEdge(triangles_, corner), v = EndOfEdge(triangles_, corner);
-    const Vec3d &a = positions_[u], &b = positions_[v];
-    const Vec3d normal = Normalized(Cross(b - a, positions_[VertexOf(triangles_, corner)] - a));
-    const Quadric q = Quadric::OfTriangle(a, b, a + normal * (2 * kCurveWeight * Norm(b - a)));
-    quadrics_[u] += q;
-    quadrics_[v] += q;
+  const EdgeCorners edges = GroupByEdge(start_.num_vertices(), triangles_);
+  for (uint32_t e = 0; e < edges.num_edges(); ++e) {
+    const double sides = edges.of(e).size() == 1 ? 2 : 1;
+    for (const uint32_t corner : edges.of(e)) {
+      if ((curve_edges_[corner / 3] >> (corner % 3) & 1) == 0) continue;
+      const uint32_t u = StartOfEdge(triangles_, corner), v = EndOfEdge(triangles_, corner);
+      const Vec3d &a = positions_[u], &b = positions_[v];
+      const Vec3d normal = Normalized(Cross(b - a, positions_[VertexOf(triangles_, corner)] - a));
+      const Quadric q = Quadric::OfTriangle(a, b, a + normal * (2 * sides * kCurveWeight * Norm(b - a)));
+      quadrics_[u] += q;
+      quadrics_[v] += q;
+    }
   }
 }
 

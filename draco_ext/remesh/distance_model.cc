@@ -35,37 +35,57 @@ Vec3d DirectionBetween(const Vec3d& from, const Vec3d& to, double tiny, const Tr
   return length > tiny ? way * (1 / length) : FaceNormal(mesh, face);
 }
 
-// Samples of a surface with the share of the area that each stands for: at least one in every triangle with an area, so that none
-// is free to go anywhere.
-struct OwnSample {
+// A sample of a surface with the share of the area that it stands for.
+struct AreaSample {
   uint32_t face;
-  Vec3d weights;
+  Vec3d weights;  // barycentric
   double share;
 };
 
-std::vector<OwnSample> SampleFaces(const TriangleMesh& mesh, const std::vector<uint32_t>& order, double num_samples, bool every_face) {
+// As shares of the whole; all zero where there is none.
+std::vector<double> AreaShares(const TriangleMesh& mesh) {
   std::vector<double> areas(mesh.triangles.size());
   double total = 0;
+  for (size_t f = 0; f < areas.size(); ++f) total += areas[f] = Norm(AreaVector(mesh.positions, mesh.triangles[f]));
+  for (double& area : areas) area = total > 0 ? area / total : 0;
+  return areas;
+}
+
+// About so many samples, half of them spread over the area and half over the faces, so that small parts of many faces, such as letters
+// on a plate, have some.
+std::vector<AreaSample> SampleSpread(const TriangleMesh& mesh, const std::vector<uint32_t>& order, double num_samples) {
+  const std::vector<double> areas = AreaShares(mesh);
+  const auto num_faces = static_cast<double>(std::count_if(areas.begin(), areas.end(), [](double area) { return area > 0; }));
+  std::vector<AreaSample> result;
+  double due = 0.5, sum = 0;
+  uint64_t n = 0;
   for (const uint32_t f : order) {
-    areas[f] = Norm(AreaVector(mesh.positions, mesh.triangles[f]));
-    total += areas[f];
+    if (!(areas[f] > 0)) continue;
+    const double expected = 0.5 * num_samples * (areas[f] + 1 / num_faces);
+    due += expected;
+    for (; due >= 1; due -= 1) {
+      result.push_back({f, TrianglePoint(n++, 0.5), areas[f] / expected});
+      sum += result.back().share;
+    }
   }
-  std::vector<OwnSample> result;
-  if (!(total > 0)) return result;
+  for (AreaSample& s : result) s.share /= sum;
+  return result;
+}
+
+// About so many, but some in every face with an area, so that none is free to go anywhere.
+std::vector<AreaSample> SampleEveryFace(const TriangleMesh& mesh, const std::vector<uint32_t>& order, double num_samples) {
+  constexpr size_t kFewest = 3;
+  const std::vector<double> areas = AreaShares(mesh);
+  std::vector<AreaSample> result;
   double due = 0.5;
   uint64_t n = 0;
   for (const uint32_t f : order) {
     if (!(areas[f] > 0)) continue;
-    due += areas[f] / total * num_samples;
-    auto count = static_cast<size_t>(due);
-    due -= static_cast<double>(count);
-    constexpr size_t kFewest = 3;
-    if (every_face) count = std::max(count, kFewest);
-    const double share = every_face ? areas[f] / total / static_cast<double>(count) : 0;
-    for (size_t i = 0; i < count; ++i) result.push_back({f, TrianglePoint(n++, 0.5), share});
-  }
-  if (!every_face) {
-    for (OwnSample& s : result) s.share = 1 / static_cast<double>(result.size());
+    due += areas[f] * num_samples;
+    const auto whole = static_cast<size_t>(due);
+    due -= static_cast<double>(whole);
+    const size_t count = std::max(whole, kFewest);
+    for (size_t i = 0; i < count; ++i) result.push_back({f, TrianglePoint(n++, 0.5), areas[f] / static_cast<double>(count)});
   }
   return result;
 }
@@ -121,8 +141,8 @@ void FitTarget::Resample(size_t num_samples) {
   if (num_samples == num_samples_) return;
   num_samples_ = num_samples;
   samples_.clear();
-  for (const OwnSample& s : SampleFaces(mesh_, tree_.faces_in_tree_order(), static_cast<double>(num_samples), false)) {
-    samples_.push_back(Vec3Cast<float>(PointOn(mesh_, s.face, s.weights)));
+  for (const AreaSample& s : SampleSpread(mesh_, tree_.faces_in_tree_order(), static_cast<double>(num_samples))) {
+    samples_.push_back({Vec3Cast<float>(PointOn(mesh_, s.face, s.weights)), s.share});
   }
 }
 
@@ -138,18 +158,18 @@ DistanceModel FitTarget::ModelAt(const TriangleMesh& mesh, const MeshNeighbors& 
   ForBlocks(samples_.size(), [&](size_t first, size_t last) {
     uint32_t hint = SurfacePoint::kNone;
     for (size_t i = first; i < last; ++i) {
-      const SurfacePoint closest = tree.ClosestPointNear(samples_[i], hint).point;
+      const SurfacePoint closest = tree.ClosestPointNear(samples_[i].position, hint).point;
       hint = closest.face;
       if (closest.face == SurfacePoint::kNone) continue;
       const Vec3d weights{closest.barycentric[0], closest.barycentric[1], closest.barycentric[2]};
-      const Vec3d p = Vec3Cast<double>(samples_[i]), q = PointOn(mesh, closest.face, weights);
+      const Vec3d p = Vec3Cast<double>(samples_[i].position), q = PointOn(mesh, closest.face, weights);
       const Vec3d normal = DirectionBetween(q, p, tiny, mesh, closest.face);
-      forward[i] = {closest.face, weights, normal, Dot(normal, q - p), 1 / static_cast<double>(samples_.size())};
+      forward[i] = {closest.face, weights, normal, Dot(normal, q - p), samples_[i].share};
     }
   });
   Add(forward, mesh, neighbors, &model.forward, &model);
 
-  const std::vector<OwnSample> own = SampleFaces(mesh, tree.faces_in_tree_order(), static_cast<double>(num_samples_), true);
+  const std::vector<AreaSample> own = SampleEveryFace(mesh, tree.faces_in_tree_order(), static_cast<double>(num_samples_));
   std::vector<Residual> backward(own.size());
   ForBlocks(own.size(), [&](size_t first, size_t last) {
     uint32_t hint = SurfacePoint::kNone;

@@ -42,7 +42,7 @@ struct DistanceModel {
 class FitTarget {
  public:
   // mesh: with some area (SurfaceDistanceMeter::Create succeeds on it); must outlive the target. Takes about `num_samples` points,
-  // in an order of neighbours.
+  // in an order of neighbours; small parts of many faces get more of them than their area asks for.
   FitTarget(const TriangleMesh& mesh, size_t num_samples);
 
   // The same with other samples, for little.
@@ -57,11 +57,16 @@ class FitTarget {
   const TriangleMesh& mesh() const { return mesh_; }
 
  private:
+  struct Sample {
+    Vec3f position;
+    double share = 0;  // of the area
+  };
+
   const TriangleMesh& mesh_;
   TriangleTree tree_;
   double diagonal_ = 0;
   size_t num_samples_ = 0;
-  std::vector<Vec3f> samples_;
+  std::vector<Sample> samples_;
 };
 
 }  // namespace lacerta

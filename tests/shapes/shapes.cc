@@ -301,6 +301,19 @@ TriangleMesh DoubleSheet(int nx, int ny) {
   return mesh;
 }
 
+TriangleMesh SpheresOverAPlate(int num_spheres, float radius) {
+  TriangleMesh mesh = GridWithBorder(4, 4);
+  const TriangleMesh sphere = BumpySphere(2, 0.3f);
+  constexpr double kGolden = 0.618034, kOther = 0.3247;  // spread over the plate
+  for (int k = 0; k < num_spheres; ++k) {
+    const Vec3d center{std::fmod(k * kGolden, 1.0), std::fmod(k * kOther, 1.0), 0.05};
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    for (const Vec3f& p : sphere.positions) mesh.positions.push_back(Vec3Cast<float>(center) + p * radius);
+    for (const Triangle& t : sphere.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return mesh;
+}
+
 TriangleMesh TouchingBoxes(int n) {
   TriangleMesh mesh = CreasedBox(n);
   const auto count = static_cast<uint32_t>(mesh.positions.size());

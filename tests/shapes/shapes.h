@@ -65,6 +65,10 @@ TriangleMesh DoubleSheet(int nx, int ny);
 // CreasedBox twice, as solids that touch along an edge of the cube: n edges of four faces each.
 TriangleMesh TouchingBoxes(int n);
 
+// A square plate of side 1 and 32 faces, GridWithBorder(4, 4), with small bumpy spheres above it, of 320 faces each: nearly all faces on a
+// small part of the area, as letters on a plate have them.
+TriangleMesh SpheresOverAPlate(int num_spheres, float radius);
+
 // A shape and what is true of it.
 struct NamedShape {
   std::string name;

@@ -86,6 +86,24 @@ TEST_F(ZeroLevelSearchTest, ReachesWhatOnlyTheWholeMeshReaches) {
   EXPECT_LT(stream.psnr, 103);
 }
 
+// Samples spread over the area alone would hardly meet the spheres; the last case is only met by a larger mesh than the search found.
+TEST_F(ZeroLevelSearchTest, MeetsThePsnrWhereMostFacesAreOnSmallParts) {
+  struct Case {
+    int num_spheres;
+    float radius;
+    double target;
+  };
+  for (const Case& c : {Case{40, 0.004f, 80}, {30, 0.006f, 85}, {60, 0.004f, 95}}) {
+    SCOPED_TRACE(c.num_spheres);
+    const TriangleMesh mesh = shapes::SpheresOverAPlate(c.num_spheres, c.radius);
+    const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(mesh).value();
+    const ZeroLevelStream stream = CodeZeroLevel(mesh, meter, {false, 0, c.target}).value();
+    EXPECT_TRUE(stream.meets_target) << stream.psnr;
+    EXPECT_LT(stream.psnr, c.target + 2);
+    EXPECT_LT(stream.mesh.triangles.size(), mesh.triangles.size() / 2);
+  }
+}
+
 TEST_F(ZeroLevelSearchTest, CodesEveryShape) {
   for (const shapes::NamedShape& shape : shapes::AllShapes()) {
     SCOPED_TRACE(shape.name);

@@ -42,6 +42,16 @@ TEST(DistanceModelTest, AgreesWithTheMeter) {
   EXPECT_NEAR(std::sqrt(model.backward), distance.backward.rms, 0.03 * distance.backward.rms);
 }
 
+// With a few hundred samples, of which an area of 1 % would have a handful.
+TEST(DistanceModelTest, SeesSmallPartsOfManyFaces) {
+  const TriangleMesh mesh = shapes::SpheresOverAPlate(30, 0.005f), larger = shapes::SpheresOverAPlate(30, 0.006f);
+  const SurfaceDistance distance = MeasureSurfaceDistance(mesh, larger, SurfaceDistanceOptions::RmsOnly(200000)).value();
+  for (const size_t samples : {400, 500, 600}) {
+    const double forward = std::sqrt(FitTarget(mesh, samples).ModelAt(larger, MeshNeighbors(larger)).forward);
+    EXPECT_NEAR(forward, distance.forward.rms, 0.15 * distance.forward.rms) << samples;
+  }
+}
+
 TEST(DistanceModelTest, ForetellsWhatAMoveChanges) {
   const TriangleMesh mesh = shapes::BumpySphere(4, 0.2f);
   TriangleMesh moved = SimplificationSequence(mesh).MeshWith(200);
