@@ -72,14 +72,17 @@ class ZeroLevelSearch {
     return best.meets ? static_cast<double>(best.coding.bytes) : std::numeric_limits<double>::infinity();
   }
 
-  // The stream of the best size, or where that misses the PSNR after all, of a larger one that meets it: few samples judge sizes, and may
-  // overlook a small part of the surface that is far off.
-  StatusOr<ZeroLevelStream> Finish() {
-    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, Finish(tried_.at(best_)));
-    while (!target_.is_rate && !stream.meets_target && best_ < mesh_.triangles.size()) {
+  // The stream of the best size, or where that misses the PSNR after all, of a larger one that meets it, as long as it takes fewer than
+  // `most_bytes`: few samples judge sizes, and may overlook a small part of the surface that is far off.
+  StatusOr<ZeroLevelStream> Finish(double most_bytes) {
+    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, FinishTrial(tried_.at(best_)));
+    const auto is_to_grow = [&] {
+      return !target_.is_rate && !stream.meets_target && best_ < mesh_.triangles.size() && static_cast<double>(stream.stream.size()) < most_bytes;
+    };
+    while (is_to_grow()) {
       LACERTA_RETURN_IF_ERROR(Grow(Square(stream.distance)));
       const int measurements = stream.measurements;
-      LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream larger, Finish(tried_.at(best_)));
+      LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream larger, FinishTrial(tried_.at(best_)));
       if (IsBetter(OutcomeOf(larger), OutcomeOf(stream), target_)) stream = std::move(larger);
       stream.measurements = measurements + larger.measurements;
     }
@@ -233,7 +236,7 @@ class ZeroLevelSearch {
 
   // Rounding makes bytes and distance jump a little with the step: several steps are tried, more of them where that costs little,
   // and judged by few samples first.
-  StatusOr<ZeroLevelStream> Finish(const Trial& trial) {
+  StatusOr<ZeroLevelStream> FinishTrial(const Trial& trial) {
     ZeroLevelCandidate& candidate = *trial.candidate;
     constexpr int kFitRounds = 2;
     const size_t triangles = candidate.num_triangles();
@@ -308,7 +311,7 @@ StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceD
   const SimplificationSequence sequence(mesh);
   ZeroLevelSearch search(mesh, sequence, meter, target, effort);
   LACERTA_RETURN_IF_ERROR(search.FindSize(std::numeric_limits<double>::infinity()).status());
-  return search.Finish();
+  return search.Finish(std::numeric_limits<double>::infinity());
 }
 
 SimplerStream::SimplerStream(const TriangleMesh& mesh, const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter,
@@ -328,7 +331,7 @@ StatusOr<bool> SimplerStream::TakesFewerThan(double bytes) {
   if (target_.is_rate || IsHopeless(sequence_, meter_, target_, bytes)) return false;
   LACERTA_ASSIGN_OR_RETURN(const bool may_be, Find(bytes));
   if (!may_be || search_->BestBytes() >= bytes) return false;
-  LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, search_->Finish());
+  LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, search_->Finish(bytes));
   if (does(stream)) stream_ = std::move(stream);
   return stream_.has_value();
 }
@@ -340,7 +343,7 @@ StatusOr<bool> SimplerStream::IsBetterThan(const MeasuredStream& coded) {
     if (IsHopeless(sequence_, meter_, target_, (1 - kLevelsWorthBytes) * most_bytes)) return false;
     LACERTA_ASSIGN_OR_RETURN(const bool may_be_better, Find(most_bytes));
     if (!may_be_better) return false;
-    LACERTA_ASSIGN_OR_RETURN(stream_, search_->Finish());
+    LACERTA_ASSIGN_OR_RETURN(stream_, search_->Finish(most_bytes));
   }
   const auto bytes_to_beat = static_cast<size_t>((1 - kLevelsWorthBytes) * static_cast<double>(coded.stream.size()));
   return IsBetter(OutcomeOf(*stream_), {coded.meets_target, bytes_to_beat, coded.psnr + kLevelsWorthPsnr}, target_);

@@ -31,6 +31,7 @@ struct Trial {
   uint64_t bytes = 0;
   bool is_measured = false;
   bool met = false;  // if measured
+  SurfaceErrors errors;  // if measured and nothing else was against it
 };
 
 // Measured over forecast, squared; of what is not yet measured 1.
@@ -102,6 +103,7 @@ class FamilyRounder {
       if (trial->met) best = *trial;
     }
     if (!best.has_value()) return Unsupported("rounding misses the errors at every precision");
+    if (meter_.status().ok()) LACERTA_RETURN_IF_ERROR(Coarsen(&*best));
     return std::move(best->family);
   }
 
@@ -146,6 +148,63 @@ class FamilyRounder {
       if (static_cast<double>(smallest->bytes) > kFar * static_cast<double>(most_bytes)) break;
     }
     return smallest;
+  }
+
+  // Takes away what forecasts had to spare: one thing after the other is rounded more coarsely, first where that saves most, as long as what is
+  // measured meets the targets.
+  Status Coarsen(Trial* best) {
+    constexpr int kMostMeasures = 6;
+    constexpr double kWorthwhile = 0.003;  // of the bytes, for a measure
+    std::vector<int> strides(1 + attributes_.size(), kLevelsPerBit / 2);  // of positions and every attribute; 0: as coarse as they can be
+    for (int i = 0; i < kMostMeasures; ++i) {
+      std::optional<Trial> smallest;
+      size_t changed = 0;
+      for (size_t k = 0; k < strides.size(); ++k) {
+        const std::optional<Levels> levels = strides[k] > 0 ? Coarser(best->levels, k, strides[k]) : std::nullopt;
+        if (!levels.has_value() || !MayMeet(*levels, *best)) continue;
+        LACERTA_ASSIGN_OR_RETURN(Trial trial, Encode(*levels));
+        if (smallest.has_value() && trial.bytes >= smallest->bytes) continue;
+        smallest = std::move(trial);
+        changed = k;
+      }
+      if (!smallest.has_value() || static_cast<double>(smallest->bytes) > (1.0 - kWorthwhile) * static_cast<double>(best->bytes)) break;
+      Measure(&*smallest);
+      if (smallest->met) {
+        *best = std::move(*smallest);
+      } else {
+        strides[changed] /= 2;
+      }
+    }
+    return Status();
+  }
+
+  // Whether what is rounded more coarsely than `best` is expected to meet the targets, from what was measured of that. Poses are left to the
+  // measure: forecasts of them say too little.
+  bool MayMeet(const Levels& levels, const Trial& best) {
+    constexpr double kMost = 1.05;  // of a squared target: forecasts err
+    const RoundedPositions &positions = forecast_.Positions(levels.positions), &before = forecast_.Positions(best.levels.positions);
+    const double farther = (Square(positions.distance) - Square(before.distance)) / Square(targets_.distance);
+    if (Square(best.errors.distance / targets_.distance) + correction_.distance * farther > kMost) return false;
+    for (size_t a = 0; a < attributes_.size(); ++a) {
+      if (!indices_[a].has_value()) continue;
+      const double more = (Square(forecast_.Rounded(a, levels.attributes[a])) - Square(forecast_.Rounded(a, best.levels.attributes[a])) +
+                           Square(positions.slides[a]) - Square(before.slides[a])) / Square(attributes_[a].target);
+      if (Square(Ratio(best.errors, *indices_[a])) + correction_.attributes[a] * more > kMost) return false;
+    }
+    return true;
+  }
+
+  // With positions (k = 0) or the attribute k - 1 so many levels coarser, or a bit where it comes in whole ones; nothing where there is no such level.
+  std::optional<Levels> Coarser(Levels levels, size_t k, int stride) const {
+    if (k == 0) {
+      levels.positions -= stride;
+      return levels.positions >= 1 ? std::optional<Levels>(std::move(levels)) : std::nullopt;
+    }
+    const RoundedAttribute& attribute = attributes_[k - 1];
+    int& level = levels.attributes[k - 1];
+    if (level > kMostLevel) return std::nullopt;
+    level -= attribute.octahedral ? kLevelsPerBit : stride;
+    return level >= attribute.FirstLevel() ? std::optional<Levels>(std::move(levels)) : std::nullopt;
   }
 
   // Levels that are expected to meet the targets: from the coarsest positions on, with attributes as coarse as these allow,
@@ -226,6 +285,7 @@ class FamilyRounder {
     // A group has lost its area, or too much has turned: no forecast tells how much finer that has to be.
     if (!errors.ok() || errors.value().MostTurned() > targets_.turned) least_positions_ = levels.positions + 1;
     if (!errors.ok()) return;
+    trial->errors = errors.value();
     Report(errors.value(), &trial->family);
     Correct(errors.value(), levels, forecast_.Positions(levels.positions));
     const double exact = WorstExactRatio(errors.value());
