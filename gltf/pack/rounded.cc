@@ -172,7 +172,8 @@ class FamilyRounder {
       if (smallest->met) {
         *best = std::move(*smallest);
       } else {
-        strides[changed] /= 2;
+        const bool in_whole_bits = changed > 0 && attributes_[changed - 1].octahedral;
+        strides[changed] = in_whole_bits ? 0 : strides[changed] / 2;
       }
     }
     return Status();
