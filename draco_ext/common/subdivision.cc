@@ -1,6 +1,16 @@
 #include "common/subdivision.h"
 
 namespace lacerta {
+namespace {
+
+// The four triangles that one is split into; the midpoint of edge e is the vertex num_vertices + e.
+void Split(const Triangle& tri, const std::array<uint32_t, 3>& edges, uint32_t num_vertices, Triangle* split) {
+  const Triangle mid = {num_vertices + edges[0], num_vertices + edges[1], num_vertices + edges[2]};
+  for (size_t k = 0; k < 3; ++k) split[k] = {tri[k], mid[(k + 2) % 3], mid[(k + 1) % 3]};
+  split[3] = mid;
+}
+
+}  // namespace
 
 Topology Refine(const Topology& c) {
   const uint32_t V = c.num_vertices, E = c.num_edges(), F = c.num_faces();
@@ -38,11 +48,10 @@ Topology Refine(const Topology& c) {
   for (uint32_t f = 0; f < F; ++f) {
     const Triangle& tri = c.triangles[f];
     const auto& fe = c.face_edges[f];
-    const auto half = [&](uint32_t e, uint32_t v) { return 2 * e + (c.edges[e][0] == v ? 0u : 1u); };
     for (uint32_t k = 0; k < 3; ++k) {
       const uint32_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
       const uint32_t inner = 2 * E + 3 * f + k;
-      t.face_edges[4 * f + k] = {inner, half(fe[k1], tri[k]), half(fe[k2], tri[k])};
+      t.face_edges[4 * f + k] = {inner, HalfAt(c, fe[k1], tri[k]), HalfAt(c, fe[k2], tri[k])};
       t.edges[inner] = {V + fe[k2], V + fe[k1]};
       t.edge_faces[inner] = {4 * f + k, 4 * f + 3};
       t.face_edges[4 * f + 3][k] = inner;
@@ -52,15 +61,25 @@ Topology Refine(const Topology& c) {
 }
 
 std::vector<Triangle> RefineTriangles(const Topology& c) {
-  const uint32_t V = c.num_vertices;
-  std::vector<Triangle> triangles;
-  triangles.reserve(size_t{4} * c.num_faces());
+  std::vector<Triangle> triangles(size_t{4} * c.num_faces());
+  for (uint32_t f = 0; f < c.num_faces(); ++f) Split(c.triangles[f], c.face_edges[f], c.num_vertices, &triangles[size_t{4} * f]);
+  return triangles;
+}
+
+std::vector<Triangle> RefineTrianglesTwice(const Topology& c) {
+  const uint32_t V = c.num_vertices, E = c.num_edges();
+  std::vector<Triangle> triangles(size_t{16} * c.num_faces());
   for (uint32_t f = 0; f < c.num_faces(); ++f) {
     const Triangle& tri = c.triangles[f];
     const auto& fe = c.face_edges[f];
     const Triangle mid = {V + fe[0], V + fe[1], V + fe[2]};
-    const Triangle split[4] = {{tri[0], mid[2], mid[1]}, {tri[1], mid[0], mid[2]}, {tri[2], mid[1], mid[0]}, mid};
-    triangles.insert(triangles.end(), split, split + 4);
+    const uint32_t inner = 2 * E + 3 * f;
+    Triangle* split = &triangles[size_t{16} * f];
+    for (uint32_t k = 0; k < 3; ++k, split += 4) {
+      const uint32_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+      Split({tri[k], mid[k2], mid[k1]}, {inner + k, HalfAt(c, fe[k1], tri[k]), HalfAt(c, fe[k2], tri[k])}, V + E, split);
+    }
+    Split(mid, {inner, inner + 1, inner + 2}, V + E, split);
   }
   return triangles;
 }

@@ -61,6 +61,8 @@ Status SetTags(const BaseTags& tags, Topology* topology);
 Topology Refine(const Topology& coarse);
 // The triangles of that level alone: 4 #F.
 std::vector<Triangle> RefineTriangles(const Topology& coarse);
+// The triangles of the level after that: 16 #F.
+std::vector<Triangle> RefineTrianglesTwice(const Topology& coarse);
 // The vertices with their roles and the triangles of that level: of a finest level, whose edges, the largest tables of all, nobody asks for.
 Topology RefineWithoutEdges(const Topology& coarse);
 
@@ -82,6 +84,9 @@ inline uint32_t FaceAcross(const Topology& t, uint32_t face, uint32_t edge) {
   const auto& ef = t.edge_faces[edge];
   return ef[0] == face ? ef[1] : ef[0];
 }
+
+// The half of `edge` at its end `vertex`, as the next finer level numbers it.
+inline uint32_t HalfAt(const Topology& t, uint32_t edge, uint32_t vertex) { return 2 * edge + (t.edges[edge][0] == vertex ? 0u : 1u); }
 
 // The vertex of `face` opposite to `edge`.
 inline uint32_t OppositeVertex(const Topology& t, uint32_t face, uint32_t edge) {

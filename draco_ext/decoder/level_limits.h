@@ -17,10 +17,10 @@ inline Status CheckBaseFits(size_t num_vertices, size_t num_triangles, const Dec
                        " triangles) is over the decode limits");
 }
 
-// Fails with kLimitExceeded where `level`, the next finer one than `t`, has more vertices or triangles than allowed.
+// Fails with kLimitExceeded where `level`, so many `steps` finer than `t`, has more vertices or triangles than allowed.
 // num_still: triangles that no level splits
-inline Status CheckLevelFits(const Topology& t, size_t num_still, int level, const DecodeLimits& limits) {
-  const LevelCounts finer = SubdividedCounts({t.num_vertices, t.num_edges(), t.num_faces()}, 1);
+inline Status CheckLevelFits(const Topology& t, size_t num_still, int level, const DecodeLimits& limits, int steps = 1) {
+  const LevelCounts finer = SubdividedCounts({t.num_vertices, t.num_edges(), t.num_faces()}, steps);
   const uint64_t num_triangles = finer.faces + num_still;
   if (finer.vertices <= limits.max_vertices && num_triangles <= limits.max_triangles && 2 * finer.edges < kNone)
     return Status();

@@ -17,6 +17,7 @@
 #include "decoder/layer_decoder.h"
 #include "decoder/level_limits.h"
 #include "decoder/range_decoder.h"
+#include "decoder/silent_level.h"
 #include "decoder/stream_reader.h"
 #include "decoder/synthesis.h"
 #include "lacerta/decoder.h"
@@ -88,7 +89,7 @@ struct ProgressiveDecoder::State {
   Status refinement;
 
   Topology topology;     // of level `topology_level`; made when the header has come
-  int topology_level = 0;  // the finest complete level, or the one before: tables are large, and not wanted after the last level
+  int topology_level = 0;  // the finest complete level, or one or two before: tables are large, and not wanted for a silent last level nor after it
   size_t num_still = 0;  // triangles that no level splits
   std::optional<StencilTable> stencils;
   CodingState coding;
@@ -112,10 +113,11 @@ struct ProgressiveDecoder::State {
   StatusOr<std::optional<size_t>> TakeSegment(Span<const uint8_t> bytes);
   StatusOr<std::optional<size_t>> TakeLayer(Span<const uint8_t> bytes);
   Status StartAttributes();
+  bool NeedsNoTables() const;
   void ReachFinestLevel();
   Status CheckNextFits();
   Status AddLevel(const LevelSteps& steps, Span<const uint8_t> payload);
-  Status AddPositions(const LevelSteps& steps, RangeDecoder* decoder);
+  void DecodePositions(const LevelSteps& steps, RangeDecoder* decoder);
   Status AddAttributes(RangeDecoder* decoder);
 };
 
@@ -159,8 +161,8 @@ StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeLayer(Span<const 
 
 StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeSegment(Span<const uint8_t> bytes) {
   const int level = mesh.num_levels + 1;
-  ReachFinestLevel();
   LACERTA_RETURN_IF_ERROR(CheckNextFits());
+  if (!NeedsNoTables()) ReachFinestLevel();
   const LevelSteps& steps = header->steps[static_cast<size_t>(mesh.num_levels)];
   std::optional<ReadSegment> segment = ReadSegment();  // of a silent level
   if (!header->IsSilent(static_cast<size_t>(mesh.num_levels))) {
@@ -169,6 +171,13 @@ StatusOr<std::optional<size_t>> ProgressiveDecoder::State::TakeSegment(Span<cons
   if (!segment) return std::optional<size_t>();
   LACERTA_RETURN_IF_ERROR(AddLevel(steps, segment->payload));
   return std::optional<size_t>(segment->size);
+}
+
+// Of the next level: it is the last one and nothing but midpoints, which the tables that are there tell.
+bool ProgressiveDecoder::State::NeedsNoTables() const {
+  const auto next = static_cast<size_t>(mesh.num_levels);
+  const bool is_plain = header->IsSilent(next) && !header->steps[next].is_curved && topology.master.empty();
+  return is_plain && attribute_decoders.empty() && mesh.num_levels + 1 == last_level() && topology_level < mesh.num_levels;
 }
 
 void ProgressiveDecoder::State::ReachFinestLevel() {
@@ -186,7 +195,8 @@ Status ProgressiveDecoder::State::StartAttributes() {
 }
 
 Status ProgressiveDecoder::State::CheckNextFits() {
-  LACERTA_RETURN_IF_ERROR(CheckLevelFits(topology, num_still, mesh.num_levels + 1, options.limits));
+  const int level = mesh.num_levels + 1;
+  LACERTA_RETURN_IF_ERROR(CheckLevelFits(topology, num_still, level, options.limits, level - topology_level));
   uint64_t num_floats = 0;
   for (AttributeDecoder& decoder : attribute_decoders) LACERTA_RETURN_IF_ERROR(decoder.CheckNextFits(options.limits, &num_floats));
   return Status();
@@ -207,11 +217,18 @@ Status ProgressiveDecoder::State::AddAttributes(RangeDecoder* decoder) {
 }
 
 Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const uint8_t> payload) {
+  const size_t num_before = mesh.positions.size();
   RangeDecoder decoder(payload);
-  Status added = AddPositions(steps, &decoder);
-  if (added.ok()) added = AddAttributes(&decoder);
+  if (NeedsNoTables()) {
+    PredictRefinedMidpoints(topology, *stencils, &mesh.positions);
+  } else {
+    DecodePositions(steps, &decoder);
+  }
+  const bool are_finite = AreFinite(Span<const Vec3f>(mesh.positions).Subspan(num_before));
+  const Status added = are_finite ? AddAttributes(&decoder)
+                                  : InvalidData("level " + std::to_string(mesh.num_levels + 1) + " has positions that are not finite");
   if (!added.ok()) {
-    mesh.positions.resize(topology.num_vertices);
+    mesh.positions.resize(num_before);
     return added;
   }
   ++mesh.num_levels;
@@ -219,7 +236,7 @@ Status ProgressiveDecoder::State::AddLevel(const LevelSteps& steps, Span<const u
   return Status();
 }
 
-Status ProgressiveDecoder::State::AddPositions(const LevelSteps& steps, RangeDecoder* decoder) {
+void ProgressiveDecoder::State::DecodePositions(const LevelSteps& steps, RangeDecoder* decoder) {
   QuantizedLevel quantized;
   if (!steps.is_silent()) quantized = ZeroLevel(topology.num_edges());
   const LevelSteps finer = mesh.num_levels + 1 < last_level() ? header->steps[mesh.num_levels + 1] : LevelSteps();
@@ -227,8 +244,6 @@ Status ProgressiveDecoder::State::AddPositions(const LevelSteps& steps, RangeDec
   coding.tangential_continues = finer.tangential_step > 0;
   CodeLevel(topology, steps, &coding, &quantized, decoder);
   SynthesizeLevel(topology, *stencils, steps, quantized, &mesh.positions);
-  if (AreFinite(Span<const Vec3f>(mesh.positions).Subspan(topology.num_vertices))) return Status();
-  return InvalidData("level " + std::to_string(mesh.num_levels + 1) + " has positions that are not finite");
 }
 
 void ProgressiveDecoder::State::Start(BaseMesh given, uint16_t checksum, const RefinementOptions& wanted) {
@@ -310,7 +325,10 @@ std::vector<Triangle> ProgressiveDecoder::Triangles() const {
   const State& s = *state_;
   if (s.mesh.num_levels == 0) return s.mesh.base_triangles;
   if (s.layers) return WithStillTriangles(s.layers->ShownTriangles(), s.mesh.base_triangles, s.mesh.tags);
-  return WithStillTriangles(s.topology_level < s.mesh.num_levels ? RefineTriangles(s.topology) : s.topology.triangles,
+  const int finer = s.mesh.num_levels - s.topology_level;
+  return WithStillTriangles(finer == 2   ? RefineTrianglesTwice(s.topology)
+                            : finer == 1 ? RefineTriangles(s.topology)
+                                         : s.topology.triangles,
                             s.mesh.base_triangles, s.mesh.tags);
 }
 
@@ -366,10 +384,10 @@ StatusOr<TriangleMesh> MeshAtLevel(const SemiRegularMesh& mesh, int level) {
     return TriangleMesh{std::vector<Vec3f>(mesh.positions.begin(), end), mesh.base_triangles};
   }
   LACERTA_ASSIGN_OR_RETURN(Topology topology, BuildTopology(mesh.num_base_vertices, mesh.base_triangles, mesh.tags));
-  for (int i = 1; i < level; ++i) topology = Refine(topology);
-  const auto end = mesh.positions.begin() + topology.num_vertices + topology.num_edges();
-  return TriangleMesh{std::vector<Vec3f>(mesh.positions.begin(), end),
-                      WithStillTriangles(RefineTriangles(topology), mesh.base_triangles, mesh.tags)};
+  const auto num_vertices = static_cast<ptrdiff_t>(SubdividedCounts({topology.num_vertices, topology.num_edges(), topology.num_faces()}, level).vertices);
+  for (int i = 2; i < level; ++i) topology = Refine(topology);
+  return TriangleMesh{std::vector<Vec3f>(mesh.positions.begin(), mesh.positions.begin() + num_vertices),
+                      WithStillTriangles(level > 1 ? RefineTrianglesTwice(topology) : RefineTriangles(topology), mesh.base_triangles, mesh.tags)};
 }
 
 }  // namespace lacerta

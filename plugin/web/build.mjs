@@ -17,7 +17,10 @@ const maxGzipped = 60_000;  // bytes of all that a page may load
 const folders = ['draco_ext/common', 'draco_ext/decoder'];
 const sources = folders.flatMap(folder => readdirSync(join(root, folder)).filter(name => name.endsWith('.cc')).map(name => join(root, folder, name)));
 for (const name of ['base_section', 'caller_data', 'group_base', 'lacerta', 'no_draco_base_reader', 'shown_level', 'stream_decoder']) sources.push(join(root, 'plugin/c', `${name}.cc`));
-sources.push(join(here, 'wasm/hot_paths.cc'), join(here, 'wasm/cosine.cc'));
+for (const name of readdirSync(join(here, 'wasm'))) {
+  const twin = sources.findIndex(source => basename(source) === name);  // which it takes the place of
+  sources.splice(twin < 0 ? sources.length : twin, 1, join(here, 'wasm', name));
+}
 
 // Where the time goes; all else is built for size. They come first, for the linker takes the first instance of a template.
 const forSpeed = new Set(['hot_paths', 'butterfly', 'coefficient_coding', 'coefficient_sets', 'curved_prediction', 'local_frame', 'octahedral', 'smooth_normals', 'subdivision', 'synthesis']);

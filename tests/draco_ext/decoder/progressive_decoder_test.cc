@@ -548,6 +548,24 @@ TEST(ProgressiveDecoderTest, TrianglesAreThoseOfTheFinestCompleteLevel) {
   }
 }
 
+// The last level has no coefficients and is made without tables of the one before; with another level after it, it is made like any.
+TEST(ProgressiveDecoderTest, ASilentLastLevelIsTheSameAsOneAmongOthers) {
+  for (const auto& [base, tags] : TaggedBases()) {
+    Coefficients c = RandomCoefficients(base, 4, 13, 4.0, tags);
+    for (const size_t level : {3, 4}) Silence(level, &c);
+    const RefinementBytes refinement = WriteRefinement(base, c.steps, c.levels, tags).value();
+    const RefinementResult whole = Decode(base, refinement.bytes);
+    ASSERT_EQ(whole.level, 4);
+    RefinementOptions options;
+    options.max_level = 3;
+    ProgressiveDecoder decoder = ProgressiveDecoder::Create(base, options).value();
+    ASSERT_TRUE(decoder.Append(refinement.bytes).ok());
+    const TriangleMesh expected = MeshAtLevel(whole.mesh, 3).value();
+    EXPECT_EQ(decoder.mesh().positions, expected.positions);
+    EXPECT_EQ(decoder.Triangles(), expected.triangles);
+  }
+}
+
 TEST(BaseMeshTest, SurvivesFloatsOfAHost) {
   BaseMesh base = Torus(9, 7);
   base.step = 0.00317f;
