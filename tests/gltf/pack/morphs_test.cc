@@ -92,7 +92,7 @@ TEST(Morphs, MorphStressTestHoldsItsError) {
   EXPECT_GT(error, 0.3 * target);
 }
 
-// Targets of the simplified surface leave rounding no room at 60 dB until that is kept closer than at first.
+// Normals of the simplified surface leave rounding no room at 60 dB until that is kept closer than at first.
 TEST(Morphs, MorphStressTestTakesFewerBytesForLess) {
   const std::string path = std::string(LACERTA_TEST_DATA_DIR) + "/MorphStressTest.glb";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
