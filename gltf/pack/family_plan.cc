@@ -77,6 +77,45 @@ void LeaveAsItIs(const FamilyContext& context, uint64_t stream_bytes, PrimitiveP
   plan->report.reason = "compressed it would be larger (" + std::to_string(stream_bytes) + " bytes with its description)";
 }
 
+// A family in Draco form, with all vertices or simplified.
+struct DracoChoice {
+  StatusOr<FamilyCandidate> smallest = Unsupported("");  // not OK: nothing is smaller than what it has to be
+  std::string simplified_reason;                         // why it is not simplified
+};
+
+// least: bytes that it has to be smaller than. simplifiable: not OK where it is known that no simplified surface is of use.
+DracoChoice SmallestDraco(const FamilyContext& context, const FamilyMeter& meter, const Status& simplifiable, bool is_stream, uint64_t least) {
+  constexpr uint64_t kAny = std::numeric_limits<uint64_t>::max();
+  std::vector<double> everywhere;
+  const auto all_vertices = [&](uint64_t most_bytes) -> StatusOr<FamilyCandidate> {
+    LACERTA_ASSIGN_OR_RETURN(FamilyCandidate candidate, WithAllVertices(context, meter, most_bytes, &everywhere));
+    if (candidate.bytes < least) return candidate;
+    return Unsupported("compressed it would be larger (" + std::to_string(candidate.bytes) + " bytes with their description)");
+  };
+  DracoChoice choice;
+  StatusOr<FamilyCandidate>& chosen = choice.smallest;
+  const bool simplifies = context.options->simplify && !is_stream;  // streams have tried a simplified surface themselves
+  // Beside a simplified surface all vertices mostly show at once, without a measure, that they take far more; a proxy has half the triangles or
+  // fewer, and what comes of it fewer still.
+  const bool all_first = !simplifies || context.options->attributes.normals_everywhere;
+  if (all_first) chosen = all_vertices(is_stream ? least : kAny);
+  if (chosen.ok()) least = chosen.value().bytes;
+  if (simplifies) {
+    StatusOr<FamilyCandidate> simplified = simplifiable.ok() ? Simplified(context, meter, everywhere) : StatusOr<FamilyCandidate>(simplifiable);
+    if (simplified.ok() && simplified.value().bytes < least) {
+      chosen = std::move(simplified);
+      least = chosen.value().bytes;
+    } else {
+      choice.simplified_reason = simplified.ok() ? "simplified it would be larger" : "not simplified: " + simplified.status().message();
+    }
+  }
+  if (all_first || (chosen.ok() && meter.has_proxy())) return choice;
+  StatusOr<FamilyCandidate> all = all_vertices(chosen.ok() ? least : kAny);
+  if (all.ok() && chosen.ok()) choice.simplified_reason = "simplified it would be larger";
+  if (all.ok() || !chosen.ok()) chosen = std::move(all);
+  return choice;
+}
+
 // The smallest of what there is, Draco with all vertices and Draco of a simplified surface, for a whole family: one that
 // stayed as it is would come apart from neighbors that are rounded.
 void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plans) {
@@ -87,34 +126,13 @@ void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plan
     if (stream_bytes >= least) return LeaveAsItIs(context, stream_bytes, &plans->front());
     least = stream_bytes;
   }
-  std::vector<double> everywhere;
   const StatusOr<std::optional<Skin>> skin = context.FindSkin();
   FamilyMeter meter(context.Primitives(), context.Error(), context.options->attributes, context.scene->texel_side,
                     context.Scale(), skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
-  const bool simplifies = context.options->simplify && !is_stream;  // streams have tried a simplified surface themselves
-  const Status coarser = simplifies && !context.HasTargets() ? meter.UseProxy() : Status();
-  const uint64_t most_bytes = is_stream ? least : std::numeric_limits<uint64_t>::max();
-  const auto all_vertices = [&]() -> StatusOr<FamilyCandidate> {
-    LACERTA_ASSIGN_OR_RETURN(FamilyCandidate candidate, WithAllVertices(context, meter, most_bytes, &everywhere));
-    if (candidate.bytes < least) return candidate;
-    return Unsupported("compressed it would be larger (" + std::to_string(candidate.bytes) + " bytes with their description)");
-  };
-  // A proxy has half the triangles or fewer, and what comes of it fewer still: all vertices are what is left where nothing does.
-  const bool all_last = meter.has_proxy() && !context.options->attributes.normals_everywhere;
-  StatusOr<FamilyCandidate> chosen = all_last ? Unsupported("") : all_vertices();
-  if (chosen.ok()) least = chosen.value().bytes;
-  std::string simplified_reason;
-  if (simplifies) {
-    StatusOr<FamilyCandidate> simplified = !skin.ok()      ? StatusOr<FamilyCandidate>(skin.status())
-                                           : !coarser.ok() ? StatusOr<FamilyCandidate>(coarser)
-                                                           : Simplified(context, meter, everywhere);
-    if (simplified.ok() && simplified.value().bytes < least) {
-      chosen = std::move(simplified);
-    } else {
-      simplified_reason = simplified.ok() ? "simplified it would be larger" : "not simplified: " + simplified.status().message();
-    }
-  }
-  if (all_last && !chosen.ok()) chosen = all_vertices();
+  const bool has_use_for_proxy = context.options->simplify && !is_stream && !context.HasTargets();
+  const Status coarser = has_use_for_proxy ? meter.UseProxy() : Status();
+  DracoChoice choice = SmallestDraco(context, meter, skin.ok() ? coarser : skin.status(), is_stream, least);
+  StatusOr<FamilyCandidate>& chosen = choice.smallest;
   if (chosen.ok()) least = chosen.value().bytes;
   const bool may_stream = coarser.ok() || context.options->encode.levels == LevelChoice::kAlways;
   if (!is_stream && may_stream && PlanStream(context, meter, least, plans)) return;
@@ -134,7 +152,7 @@ void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plan
       plan.smooth_normals = false;
     }
     if (!candidate.report.reason.empty()) AddReason(candidate.report.reason, &report);
-    if (!simplified_reason.empty()) AddReason(simplified_reason, &report);
+    if (!choice.simplified_reason.empty()) AddReason(choice.simplified_reason, &report);
     report.storage = PrimitiveStorage::kDraco;
     report.bytes_after = candidate.encoded.bytes.size() + BytesOfTargets(candidate.targets);
     report.error = candidate.report.error;

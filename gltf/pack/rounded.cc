@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -22,6 +23,9 @@ struct Levels {
   std::vector<int> attributes;
   bool operator<(const Levels& other) const {
     return positions != other.positions ? positions < other.positions : attributes < other.attributes;
+  }
+  bool IsAsFineAs(const Levels& other) const {  // in everything
+    return positions >= other.positions && std::equal(attributes.begin(), attributes.end(), other.attributes.begin(), std::greater_equal<>());
   }
 };
 
@@ -90,7 +94,7 @@ class FamilyRounder {
     constexpr int kMostRounds = 10;
     constexpr double kHopeless = 1.5;  // of the bytes, whatever a measure would correct
     constexpr double kWorthwhile = 0.01;  // of the bytes, for another measure
-    std::optional<Trial> best;
+    Trial* best = nullptr;
     for (int round = 0; round < kMostRounds; ++round) {
       LACERTA_ASSIGN_OR_RETURN(Trial* trial, Smallest(most_bytes));
       // What is decoded has all that was asked for and nothing smaller is expected: done.
@@ -98,12 +102,14 @@ class FamilyRounder {
       if (static_cast<double>(trial->bytes) > kHopeless * static_cast<double>(most_bytes)) {
         return Unsupported("compressed it would be larger (about " + std::to_string(trial->bytes) + " bytes)");
       }
-      if (best.has_value() && static_cast<double>(trial->bytes) > (1.0 - kWorthwhile) * static_cast<double>(best->bytes)) break;
+      if (best != nullptr && static_cast<double>(trial->bytes) > (1.0 - kWorthwhile) * static_cast<double>(best->bytes)) break;
       Measure(trial);
-      if (trial->met) best = *trial;
+      if (trial->met) best = trial;
     }
-    if (!best.has_value()) return Unsupported("rounding misses the errors at every precision");
-    if (meter_.status().ok()) LACERTA_RETURN_IF_ERROR(Coarsen(&*best));
+    if (best == nullptr) return Unsupported("rounding misses the errors at every precision");
+    if (meter_.status().ok()) {
+      LACERTA_ASSIGN_OR_RETURN(best, Coarsened(best));
+    }
     return std::move(best->family);
   }
 
@@ -139,44 +145,59 @@ class FamilyRounder {
     constexpr double kFar = 3;  // times as many: other precisions do not save so much
     Trial* smallest = nullptr;
     for (const Levels& levels : Candidates()) {
-      auto known = trials_.find(levels);
-      if (known == trials_.end()) {
-        LACERTA_ASSIGN_OR_RETURN(Trial trial, Encode(levels));
-        known = trials_.emplace(levels, std::move(trial)).first;
-      }
-      if (smallest == nullptr || known->second.bytes < smallest->bytes) smallest = &known->second;
+      LACERTA_ASSIGN_OR_RETURN(Trial* trial, TrialAt(levels));
+      if (smallest == nullptr || trial->bytes < smallest->bytes) smallest = trial;
       if (static_cast<double>(smallest->bytes) > kFar * static_cast<double>(most_bytes)) break;
     }
     return smallest;
   }
 
+  StatusOr<Trial*> TrialAt(const Levels& levels) {
+    auto known = trials_.find(levels);
+    if (known == trials_.end()) {
+      LACERTA_ASSIGN_OR_RETURN(Trial trial, Encode(levels));
+      known = trials_.emplace(levels, std::move(trial)).first;
+    }
+    return &known->second;
+  }
+
   // Takes away what forecasts had to spare: one thing after the other is rounded more coarsely, first where that saves most, as long as what is
   // measured meets the targets.
-  Status Coarsen(Trial* best) {
+  StatusOr<Trial*> Coarsened(Trial* best) {
     constexpr int kMostMeasures = 6;
     constexpr double kWorthwhile = 0.003;  // of the bytes, for a measure
     std::vector<int> strides(1 + attributes_.size(), kLevelsPerBit / 2);  // of positions and every attribute; 0: as coarse as they can be
     for (int i = 0; i < kMostMeasures; ++i) {
-      std::optional<Trial> smallest;
+      Trial* smallest = nullptr;
       size_t changed = 0;
       for (size_t k = 0; k < strides.size(); ++k) {
-        const std::optional<Levels> levels = strides[k] > 0 ? Coarser(best->levels, k, strides[k]) : std::nullopt;
+        std::optional<Levels> levels = Coarser(best->levels, k, strides[k]);
+        while (levels.has_value() && HasMissed(*levels)) levels = Coarser(best->levels, k, strides[k] = SmallerStride(k, strides[k]));
         if (!levels.has_value() || !MayMeet(*levels, *best)) continue;
-        LACERTA_ASSIGN_OR_RETURN(Trial trial, Encode(*levels));
-        if (smallest.has_value() && trial.bytes >= smallest->bytes) continue;
-        smallest = std::move(trial);
+        LACERTA_ASSIGN_OR_RETURN(Trial* trial, TrialAt(*levels));
+        if (smallest != nullptr && trial->bytes >= smallest->bytes) continue;
+        smallest = trial;
         changed = k;
       }
-      if (!smallest.has_value() || static_cast<double>(smallest->bytes) > (1.0 - kWorthwhile) * static_cast<double>(best->bytes)) break;
-      Measure(&*smallest);
+      if (smallest == nullptr || static_cast<double>(smallest->bytes) > (1.0 - kWorthwhile) * static_cast<double>(best->bytes)) break;
+      Measure(smallest);
       if (smallest->met) {
-        *best = std::move(*smallest);
+        best = smallest;
       } else {
-        const bool in_whole_bits = changed > 0 && attributes_[changed - 1].octahedral;
-        strides[changed] = in_whole_bits ? 0 : strides[changed] / 2;
+        strides[changed] = SmallerStride(changed, strides[changed]);
       }
     }
-    return Status();
+    return best;
+  }
+
+  int SmallerStride(size_t k, int stride) const { return k > 0 && attributes_[k - 1].octahedral ? 0 : stride / 2; }
+
+  // Whether something that is nowhere coarser was measured to miss the targets.
+  bool HasMissed(const Levels& levels) const {
+    return std::any_of(trials_.begin(), trials_.end(), [&](const auto& entry) {
+      const Trial& trial = entry.second;
+      return trial.is_measured && !trial.met && trial.levels.IsAsFineAs(levels);
+    });
   }
 
   // Whether what is rounded more coarsely than `best` is expected to meet the targets, from what was measured of that. Poses are left to the
@@ -195,8 +216,10 @@ class FamilyRounder {
     return true;
   }
 
-  // With positions (k = 0) or the attribute k - 1 so many levels coarser, or a bit where it comes in whole ones; nothing where there is no such level.
+  // With positions (k = 0) or the attribute k - 1 so many levels coarser, or a bit where it comes in whole ones; nothing where there is no such level or no
+  // stride.
   std::optional<Levels> Coarser(Levels levels, size_t k, int stride) const {
+    if (stride == 0) return std::nullopt;
     if (k == 0) {
       levels.positions -= stride;
       return levels.positions >= 1 ? std::optional<Levels>(std::move(levels)) : std::nullopt;

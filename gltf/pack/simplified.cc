@@ -127,20 +127,13 @@ StatusOr<SimplifiedFamily> SimplifyInPoses(const FamilyMeter& meter, ErrorTarget
   return best;
 }
 
-}  // namespace
-
-StatusOr<SimplifiedFamily> SimplifyPrimitives(const FamilyMeter& meter, const std::vector<double>& everywhere) {
-  constexpr double kShare = 0.85;  // of every target to simplification: what rounding adds comes on top in squares
-  LACERTA_RETURN_IF_ERROR(meter.status());
-  if (meter.leaves_out()) {
-    // Names the attribute.
-    return ToAttributedMesh(meter.primitives(), meter.texels_per_unit(), OtherAttributes::kRefuse, meter.skin(), meter.custom()).status();
-  }
+// share: of every target; what rounding adds comes on top in squares.
+StatusOr<SimplifiedFamily> SimplifyPrimitives(const FamilyMeter& meter, const std::vector<double>& everywhere, double share) {
   ErrorTargets targets = meter.TargetsWith(everywhere);
-  targets.distance *= kShare;
-  targets.turned *= kShare;
-  for (double& target : targets.attributes) target *= kShare;
-  for (double& target : targets.everywhere) target *= kShare;
+  targets.distance *= share;
+  targets.turned *= share;
+  for (double& target : targets.attributes) target *= share;
+  for (double& target : targets.everywhere) target *= share;
   if (meter.skin() != nullptr) return SimplifyInPoses(meter, std::move(targets));
   LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.simplifiable(), meter.meter(), targets));
   // Where attributes decide, a shape kept closer costs nothing, and collapses that spare it spare the attributes.
@@ -159,9 +152,28 @@ StatusOr<SimplifiedFamily> SimplifyPrimitives(const FamilyMeter& meter, const st
   return SimplifiedFamily{std::move(primitives), std::move(simplified.errors)};
 }
 
+}  // namespace
+
+StatusOr<RoundedFamily> SimplifyAndRound(const FamilyMeter& meter, const std::vector<double>& everywhere,
+                                         const std::function<StatusOr<RoundedFamily>(SimplifiedFamily)>& round) {
+  LACERTA_RETURN_IF_ERROR(meter.status());
+  if (meter.leaves_out()) {
+    // Names the attribute.
+    return ToAttributedMesh(meter.primitives(), meter.texels_per_unit(), OtherAttributes::kRefuse, meter.skin(), meter.custom()).status();
+  }
+  StatusOr<RoundedFamily> rounded = Unsupported("");
+  for (const double share : {0.85, 0.7, 0.5}) {  // of every target to simplification
+    LACERTA_ASSIGN_OR_RETURN(SimplifiedFamily simplified, SimplifyPrimitives(meter, everywhere, share));
+    rounded = round(std::move(simplified));
+    if (rounded.ok() || rounded.status().code() != StatusCode::kUnsupported) break;
+  }
+  return rounded;
+}
+
 StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vector<double>& everywhere) {
-  LACERTA_ASSIGN_OR_RETURN(const SimplifiedFamily simplified, SimplifyPrimitives(meter, everywhere));
-  return RoundFamily(PointersTo(simplified.primitives), meter, &simplified.errors, everywhere);
+  return SimplifyAndRound(meter, everywhere, [&](const SimplifiedFamily& simplified) {
+    return RoundFamily(PointersTo(simplified.primitives), meter, &simplified.errors, everywhere);
+  });
 }
 
 }  // namespace lacerta

@@ -2,6 +2,7 @@
 #ifndef LACERTA_PACK_SIMPLIFIED_H_
 #define LACERTA_PACK_SIMPLIFIED_H_
 
+#include <functional>
 #include <vector>
 
 #include "lacerta/status.h"
@@ -15,11 +16,12 @@ struct SimplifiedFamily {
   SurfaceErrors errors;               // against the meter's, as it measures
 };
 
-// Simplifies the meter's primitives (one mesh or meshes that touch) as one surface, so that their borders stay joined. Leaves room in
-// the targets for rounding. Fails as SimplifyFamily.
-StatusOr<SimplifiedFamily> SimplifyPrimitives(const FamilyMeter& meter, const std::vector<double>& everywhere = {});
+// Simplifies the meter's primitives (one mesh or meshes that touch) as one surface, so that their borders stay joined, and calls `round` with what
+// is left. Leaves room in the targets for rounding: more of it where `round` fails with kUnsupported at first. Fails as SimplifyFamily.
+StatusOr<RoundedFamily> SimplifyAndRound(const FamilyMeter& meter, const std::vector<double>& everywhere,
+                                         const std::function<StatusOr<RoundedFamily>(SimplifiedFamily)>& round);
 
-// The same, and rounds what is left. The errors of what is decoded, measured on the surface, meet the meter's targets and
+// The same, rounded by RoundFamily. The errors of what is decoded, measured on the surface, meet the meter's targets and
 // `everywhere` (as in ErrorTargets, for the attributes of FamilyMeter::original). Fails with kUnsupported where
 // attributes cannot be interpolated (joints without a skin, application attributes) or the errors are not met.
 StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vector<double>& everywhere = {});

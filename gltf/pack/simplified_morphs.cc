@@ -46,35 +46,36 @@ StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
   }
   const FamilyMeter morphed(PointersTo(with_targets), meter.error(), meter.attribute_targets(), texel_side,
                             meter.texels_per_unit(), meter.skin());
-  LACERTA_ASSIGN_OR_RETURN(SimplifiedFamily simplified,
-                           SimplifyPrimitives(morphed, BoundsFor(meter, morphed, everywhere)));
-  std::vector<std::vector<MorphTarget>> simplified_targets;
-  for (size_t m = 0; m < targets.size(); ++m) {
-    simplified_targets.push_back(TakeTargets(*targets[m], kNothing * meter.error(), &simplified.primitives[m]));
-  }
-  MorphedFamily result;
-  const auto order_targets = [&](const RoundedFamily& rounded) {
-    result.targets.clear();
-    for (size_t m = 0; m < targets.size(); ++m) {
-      auto reordered = ReorderTargets({&simplified.primitives[m], &simplified_targets[m]}, rounded.precisions[m],
-                                      rounded.members[m].decoded);
-      if (!reordered.has_value()) return false;
-      result.targets.push_back(std::move(*reordered));
-    }
-    return true;
-  };
   LACERTA_ASSIGN_OR_RETURN(const MorphMeter morph_meter, MorphMeter::Create(originals));
-  const auto takes_targets = [&](const RoundedFamily& rounded) {
-    if (!order_targets(rounded)) return false;
-    std::vector<MorphedPrimitive> stored;
-    for (size_t m = 0; m < targets.size(); ++m) stored.push_back({&rounded.members[m].decoded, &result.targets[m]});
-    const StatusOr<double> worst = morph_meter.Worst(stored);
-    return worst.ok() && worst.value() <= meter.error();
+  MorphedFamily result;
+  const auto round = [&](SimplifiedFamily simplified) -> StatusOr<RoundedFamily> {
+    std::vector<std::vector<MorphTarget>> simplified_targets;
+    for (size_t m = 0; m < targets.size(); ++m) {
+      simplified_targets.push_back(TakeTargets(*targets[m], kNothing * meter.error(), &simplified.primitives[m]));
+    }
+    const auto order_targets = [&](const RoundedFamily& rounded) {
+      result.targets.clear();
+      for (size_t m = 0; m < targets.size(); ++m) {
+        auto reordered = ReorderTargets({&simplified.primitives[m], &simplified_targets[m]}, rounded.precisions[m],
+                                        rounded.members[m].decoded);
+        if (!reordered.has_value()) return false;
+        result.targets.push_back(std::move(*reordered));
+      }
+      return true;
+    };
+    const auto takes_targets = [&](const RoundedFamily& rounded) {
+      if (!order_targets(rounded)) return false;
+      std::vector<MorphedPrimitive> stored;
+      for (size_t m = 0; m < targets.size(); ++m) stored.push_back({&rounded.members[m].decoded, &result.targets[m]});
+      const StatusOr<double> worst = morph_meter.Worst(stored);
+      return worst.ok() && worst.value() <= meter.error();
+    };
+    const SurfaceErrors errors = ErrorsOf(meter, morphed, std::move(simplified.errors));
+    StatusOr<RoundedFamily> rounded = RoundFamily(PointersTo(simplified.primitives), meter, &errors, everywhere, takes_targets);
+    if (rounded.ok() && !order_targets(rounded.value())) return InternalError("the morph targets do not follow what was measured");
+    return rounded;
   };
-  const SurfaceErrors errors = ErrorsOf(meter, morphed, std::move(simplified.errors));
-  LACERTA_ASSIGN_OR_RETURN(result.rounded,
-                           RoundFamily(PointersTo(simplified.primitives), meter, &errors, everywhere, takes_targets));
-  if (!order_targets(result.rounded)) return InternalError("the morph targets do not follow what was measured");
+  LACERTA_ASSIGN_OR_RETURN(result.rounded, SimplifyAndRound(morphed, BoundsFor(meter, morphed, everywhere), round));
   return result;
 }
 

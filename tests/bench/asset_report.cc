@@ -111,7 +111,7 @@ StatusOr<std::vector<Judge>> MakeJudges(const Asset& original, double psnr) {
 }
 
 // Few while bits are looked for; many, others than the packer's, of what it made.
-constexpr uint64_t kSearchSamples = 20'000, kSamples = 250'000;
+constexpr uint64_t kSearchSamples = 20'000, kSamples = 1'000'000;
 
 StatusOr<Errors> MeasureAll(const std::vector<Judge>& judges, const std::vector<Primitive>& primitives, uint64_t samples) {
   Errors worst;

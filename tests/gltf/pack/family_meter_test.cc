@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <ctime>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace lacerta {
@@ -44,6 +46,43 @@ TEST(FamilyMeter, MeasuresACrowdInTheTimeOfASurface) {
   EXPECT_LE(errors.value().distance, 0.002);
   EXPECT_GE(errors.value().distance, 0.0004);
   EXPECT_LT(seconds, 3.0);
+}
+
+// A flat square of two triangles in each of 200 by 200 cells; the first triangle of some cells looks down.
+Primitive Square(uint32_t num_turned) {
+  constexpr uint32_t kCells = 200;
+  std::vector<Vec3f> positions;
+  Primitive primitive;
+  for (uint32_t i = 0; i < (kCells + 1) * (kCells + 1); ++i) {
+    positions.push_back({static_cast<float>(i % (kCells + 1)), static_cast<float>(i / (kCells + 1)), 0});
+  }
+  for (uint32_t cell = 0; cell < kCells * kCells; ++cell) {
+    const uint32_t v = cell / kCells * (kCells + 1) + cell % kCells, up = v + kCells + 1;
+    primitive.triangles.insert(primitive.triangles.end(), {{v, v + 1, up}, {v + 1, up + 1, up}});
+  }
+  for (uint32_t i = 0; i < num_turned; ++i) {
+    Triangle& turned = primitive.triangles[(2 * 1009 * i) % primitive.triangles.size()];
+    std::swap(turned[0], turned[1]);
+  }
+  primitive.num_vertices = positions.size();
+  primitive.attributes = {{"POSITION", MakeFloatAccessor(positions)}};
+  return primitive;
+}
+
+// How far off the measured share of the area that looks down is, relative to it, where `times` as much is allowed.
+double OffAtBoundOf(double times) {
+  constexpr uint32_t kTurned = 38;
+  const Primitive original = Square(0), stored = Square(kTurned);
+  const double share = kTurned / static_cast<double>(original.triangles.size());
+  AttributeTargets targets;
+  targets.turned = times * share;
+  const FamilyMeter meter({&original}, 0.1, targets, 1024, [](size_t, uint64_t) { return 1024.0; });
+  return std::fabs(meter.Measure({&stored}).value().turned / share - 1.0);
+}
+
+TEST(FamilyMeter, TakesMoreSamplesOfATurnedAreaNearItsBound) {
+  EXPECT_LT(OffAtBoundOf(1.05), 0.015);
+  EXPECT_GT(OffAtBoundOf(10.0), 0.025);
 }
 
 }  // namespace

@@ -74,6 +74,35 @@ TEST(Simplified, HalvesStayJoinedAndMeetTheErrors) {
   }
 }
 
+TEST(Simplified, WhatLeavesRoundingNoRoomIsKeptCloser) {
+  const TriangleMesh ball = testing::WavySphere(40, 64);
+  const Primitive upper = Half(ball, true);
+  const double error = DistanceOfPsnr(55.0, BoundingBoxDiagonal(ball));
+  const FamilyMeter meter({&upper}, error, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
+  std::vector<double> worst;
+  std::vector<size_t> sizes;
+  StatusCode code = StatusCode::kUnsupported;
+  const auto refuse = [&](const SimplifiedFamily& simplified) -> StatusOr<RoundedFamily> {
+    worst.push_back(WorstRatio(simplified.errors, meter.targets()));
+    sizes.push_back(simplified.primitives[0].triangles.size());
+    if (worst.back() > 0.6) return Status(code, "too far off");
+    return RoundFamily(PointersTo(simplified.primitives), meter, &simplified.errors);
+  };
+  const auto family = SimplifyAndRound(meter, {}, refuse);
+  ASSERT_TRUE(family.ok()) << family.status().message();
+  EXPECT_LE(family.value().error, error);
+  ASSERT_EQ(worst.size(), 3u);
+  for (size_t i = 1; i < worst.size(); ++i) {
+    EXPECT_LT(worst[i], 0.9 * worst[i - 1]);
+    EXPECT_GT(sizes[i], sizes[i - 1]);
+  }
+  EXPECT_GT(worst.back(), 0.3);
+  worst.clear();
+  code = StatusCode::kInternal;  // nothing that more room would mend
+  EXPECT_EQ(SimplifyAndRound(meter, {}, refuse).status().code(), code);
+  EXPECT_EQ(worst.size(), 1u);
+}
+
 TEST(Simplified, DenseSurfacesAreHeldToThemselvesNotToTheirProxy) {
   const TriangleMesh ball = testing::WavySphere(230, 450);
   const Primitive upper = Half(ball, true);
