@@ -42,7 +42,9 @@ struct Trial {
 class Search {
  public:
   Search(const AttributedMesh& original, const SurfaceErrorMeter& meter, const ErrorTargets& targets, const SimplifyToErrorsOptions& options)
-      : meter_(meter), targets_(targets), options_(options), num_fit_samples_(std::clamp<size_t>(original.surface.triangles.size(), 10'000, 100'000)),
+      : meter_(meter), targets_(targets), options_(options),
+        num_fit_samples_(SamplesToTell(original.surface.triangles.size(), std::clamp<uint64_t>(original.surface.triangles.size(), 10'000, 100'000))),
+        num_search_samples_(SamplesToTell(original.surface.triangles.size(), options.num_search_samples)),
         fit_target_(original.surface, num_fit_samples_), surface_(original) {}
 
   // The surface of that size, moved to where it is closest to the original.
@@ -72,7 +74,7 @@ class Search {
     Found found;
     for (int i = 0; i < kMaxTrials && enough > std::max(kCloseEnough * too_few, too_few + 1); ++i) {
       const auto size = static_cast<uint32_t>(std::clamp(next, too_few + 0.5, std::max(enough - 0.5, too_few + 0.5)));
-      LACERTA_ASSIGN_OR_RETURN(Trial trial, Measured(Fitted(sequence, size), options_.num_search_samples));
+      LACERTA_ASSIGN_OR_RETURN(Trial trial, Measured(Fitted(sequence, size), num_search_samples_));
       const double ratio = trial.ratio;
       if (ratio <= 1) {
         enough = std::min<double>(size, static_cast<double>(trial.mesh.surface.triangles.size()));
@@ -137,6 +139,7 @@ class Search {
   const ErrorTargets& targets_;
   const SimplifyToErrorsOptions& options_;
   const size_t num_fit_samples_;
+  const uint64_t num_search_samples_;
   FitTarget fit_target_;
   GroupSurface surface_;
 };
@@ -153,6 +156,11 @@ Status CheckTargets(const AttributedMesh& mesh, const ErrorTargets& targets) {
 }
 
 }  // namespace
+
+uint64_t SamplesToTell(size_t num_triangles, uint64_t most) {
+  constexpr uint64_t kFewest = 2000, kPerTriangle = 16;
+  return std::min(most, std::max(kFewest, kPerTriangle * num_triangles));
+}
 
 // Costs of collapses are sums over the area, targets means over the part of it that has the attribute.
 std::vector<double> WeightsOfTargets(const AttributedMesh& mesh, const SurfaceErrorMeter& meter, const ErrorTargets& targets) {

@@ -26,6 +26,10 @@ struct SimplifiedSurface {
   bool meets_targets = true;  // false only where even the input's own triangles do not, by the precision of the measure
 };
 
+// Of `most` samples those that a search needs on a surface of so many triangles: small parts, of which an asset may have thousands, have
+// less to tell. What is found is measured with all.
+uint64_t SamplesToTell(size_t num_triangles, uint64_t most);
+
 // For each attribute the weight against positions, as for AttributedSimplification, that the targets tell.
 std::vector<double> WeightsOfTargets(const AttributedMesh& mesh, const SurfaceErrorMeter& meter, const ErrorTargets& targets);
 

@@ -74,7 +74,7 @@ void FindCurves(const AttributedMesh& input, WedgeMesh* mesh) {
   const std::vector<Triangle>& triangles = mesh->mesh.triangles;
   mesh->curve_edges.assign(triangles.size(), 0);
   std::vector<uint32_t> num_curves(mesh->num_vertices(), 0), num_copies(input.surface.positions.size(), 0);
-  std::vector<uint8_t> on_border(mesh->num_vertices(), 0);
+  std::vector<uint8_t> has_border(input.surface.positions.size(), 0);  // at one of its copies
   for (const uint32_t source : mesh->source_vertex) ++num_copies[source];
   const EdgeCorners edges = GroupByEdge(mesh->num_vertices(), triangles);
   for (uint32_t e = 0; e < edges.num_edges(); ++e) {
@@ -83,11 +83,12 @@ void FindCurves(const AttributedMesh& input, WedgeMesh* mesh) {
     for (const uint32_t c : corners) mesh->curve_edges[c / 3] |= static_cast<uint8_t>(1u << (c % 3));
     for (const uint32_t v : {StartOfEdge(triangles, corners[0]), EndOfEdge(triangles, corners[0])}) {
       ++num_curves[v];
-      if (corners.size() == 1) on_border[v] = 1;
+      if (corners.size() == 1) has_border[mesh->source_vertex[v]] = 1;
     }
   }
   for (uint32_t v = 0; v < mesh->num_vertices(); ++v) {
-    const bool is_cut = on_border[v] != 0 && num_copies[mesh->source_vertex[v]] > 1;
+    const uint32_t source = mesh->source_vertex[v];
+    const bool is_cut = has_border[source] != 0 && num_copies[source] > 1;
     mesh->freedom.push_back(is_cut                ? VertexFreedom::kFixed
                             : num_curves[v] == 0  ? VertexFreedom::kSurface
                             : num_curves[v] == 2  ? VertexFreedom::kCurve

@@ -16,7 +16,7 @@ enum class VertexFreedom : uint8_t {
   kSurface,   // no curve meets here
   kCurve,     // two curve edges
   kJunction,  // where curves end or cross: stays one
-  kFixed,     // where the surface was cut to be a manifold: both sides keep their points
+  kFixed,     // where the surface was cut to be a manifold: all sides keep their points, as well the two that go on in each other
 };
 
 // The values of one attribute, as nodes: corners around a vertex that have the same value are one node.

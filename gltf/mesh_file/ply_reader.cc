@@ -144,8 +144,32 @@ struct VertexAttributes {
   CornerValues texture = TextureValues(), normals = NormalValues(), colors = ColorValues(3);
 };
 
+// A vertex without a finite position: the grids of depth cameras have one where nothing was seen, which no triangle uses.
+struct UnseenVertex {
+  uint32_t vertex;
+  std::string where;  // in the file
+};
+
+// Puts unseen vertices where another is, so that they have a position; fails where a triangle uses one.
+Status PlaceUnseen(const std::vector<UnseenVertex>& unseen, TriangleMesh* mesh) {
+  if (unseen.empty()) return Status();
+  std::vector<uint8_t> is_used(mesh->positions.size(), 0);
+  for (const Triangle& t : mesh->triangles) {
+    for (const uint32_t v : t) is_used[v] = 1;
+  }
+  for (const UnseenVertex& u : unseen) {
+    if (is_used[u.vertex] != 0) {
+      return InvalidData(u.where + ": vertex " + std::to_string(u.vertex) +
+                         ": a coordinate is not a finite 32-bit float, and a triangle uses it; repair or remove the vertex");
+    }
+    mesh->positions[u.vertex] = mesh->positions[mesh->triangles[0][0]];
+  }
+  return Status();
+}
+
 template <typename Values>
-Status ReadVertices(const PlyElement& element, const Vec3d& origin, Values* values, TriangleMesh* mesh, VertexAttributes* attributes) {
+Status ReadVertices(const PlyElement& element, const Vec3d& origin, Values* values, TriangleMesh* mesh, VertexAttributes* attributes,
+                    std::vector<UnseenVertex>* unseen) {
   const VertexColumns columns(element);
   const char* const axes[3] = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
@@ -160,7 +184,10 @@ Status ReadVertices(const PlyElement& element, const Vec3d& origin, Values* valu
   for (uint64_t v = 0; v < element.count; ++v) {
     LACERTA_RETURN_IF_ERROR(ReadRow(element, values, [&](size_t property, double value) { row[property] = value; }));
     const auto [x, y, z] = columns.position;
-    LACERTA_RETURN_IF_ERROR(AppendPosition(row[static_cast<size_t>(x)], row[static_cast<size_t>(y)], row[static_cast<size_t>(z)], origin, mesh));
+    if (!AppendPosition(row[static_cast<size_t>(x)], row[static_cast<size_t>(y)], row[static_cast<size_t>(z)], origin, mesh).ok()) {
+      unseen->push_back({static_cast<uint32_t>(v), values->Where()});
+      mesh->positions.push_back({});
+    }
     if (columns.has_normals()) {
       for (const int property : columns.normal) attributes->normals.attribute.values.push_back(number(property));
     }
@@ -287,6 +314,7 @@ StatusOr<FileSurface> ReadBody(const PlyHeader& header, const Vec3d& origin, Val
   surface.textures = header.textures;
   TriangleMesh& mesh = surface.surface;
   VertexAttributes attributes;
+  std::vector<UnseenVertex> unseen;
   CornerValues wedges = TextureValues();
   uint64_t num_vertices = 0;
   for (const PlyElement& element : header.elements) {
@@ -298,7 +326,7 @@ StatusOr<FileSurface> ReadBody(const PlyHeader& header, const Vec3d& origin, Val
                                        values->bytes_left() + Values::kSlack, "rows of element " + element.name));
     Status status;
     if (element.name == "vertex") {
-      status = ReadVertices(element, origin, values, &mesh, &attributes);
+      status = ReadVertices(element, origin, values, &mesh, &attributes, &unseen);
     } else if (element.name == "face") {
       status = ReadFaces(element, num_vertices, values, &surface, &wedges);
     } else if (element.name == "tristrips") {
@@ -310,6 +338,7 @@ StatusOr<FileSurface> ReadBody(const PlyHeader& header, const Vec3d& origin, Val
   }
   if (mesh.positions.size() != num_vertices) return InvalidData("the vertices have no properties");
   LACERTA_RETURN_IF_ERROR(CheckNotEmpty(mesh));
+  LACERTA_RETURN_IF_ERROR(PlaceUnseen(unseen, &mesh));
   const bool has_wedges = !wedges.attribute.values.empty();
   if (has_wedges) std::swap(attributes.texture, wedges);  // they may have seams
   for (CornerValues* values_at : {&attributes.texture, &attributes.normals, &attributes.colors}) {

@@ -31,12 +31,34 @@ AttributeDistance Distance(const AttributedMesh& a, const AttributedMesh& b) {
 
 double PositionError(const AttributedMesh& a, const AttributedMesh& b) { return MeasureSurfaceDistance(a.surface, b.surface).value().Rms(); }
 
-size_t CountBorderEdges(const AttributedMesh& mesh) {
+size_t CountEdges(const AttributedMesh& mesh, int num_triangles) {
   std::map<std::pair<uint32_t, uint32_t>, int> count;
   for (const Triangle& t : mesh.surface.triangles) {
     for (size_t k = 0; k < 3; ++k) ++count[std::minmax(t[k], t[(k + 1) % 3])];
   }
-  return static_cast<size_t>(std::count_if(count.begin(), count.end(), [](const auto& edge) { return edge.second == 1; }));
+  return static_cast<size_t>(std::count_if(count.begin(), count.end(), [&](const auto& edge) { return edge.second == num_triangles; }));
+}
+
+size_t CountBorderEdges(const AttributedMesh& mesh) { return CountEdges(mesh, 1); }
+
+// A floor of 2 n x n squares, and a wall of n x n that stands on a wavy line of it.
+TriangleMesh WallOnAFloor(uint32_t n) {
+  TriangleMesh mesh;
+  for (uint32_t i = 0; i <= 3 * n; ++i) {  // rows of the floor, then of the wall
+    for (uint32_t j = 0; j <= n; ++j) {
+      const auto x = static_cast<float>(i) / static_cast<float>(n) - 1, y = static_cast<float>(j) / static_cast<float>(n);
+      const float wave = 0.1f * std::sin(5 * y);
+      mesh.positions.push_back(i <= 2 * n ? Vec3f{x + wave, y, 0} : Vec3f{wave, y, x - 1});
+    }
+  }
+  for (uint32_t i = 0; i < 3 * n; ++i) {
+    for (uint32_t j = 0; j < n; ++j) {
+      const uint32_t a = (i == 2 * n ? n : i) * (n + 1) + j, b = (i + 1) * (n + 1) + j;
+      mesh.triangles.push_back({a, b, b + 1});
+      mesh.triangles.push_back({a, b + 1, a + 1});
+    }
+  }
+  return mesh;
 }
 
 // Doubled, in the texture.
@@ -141,6 +163,16 @@ TEST(AttributedSimplificationTest, NoCrackOpensBetweenGroups) {
   EXPECT_EQ(CountBorderEdges(small), 0u);
   for (uint32_t g = 0; g < 4; ++g) EXPECT_GT(std::count(small.groups.begin(), small.groups.end(), g), 20);
   EXPECT_LT(PositionError(mesh, small), 0.01);
+}
+
+TEST(AttributedSimplificationTest, NoCrackOpensWhereAWallStandsOnAFloor) {
+  constexpr uint32_t kSide = 20;
+  const TriangleMesh wall = WallOnAFloor(kSide);
+  const AttributedMesh mesh = Weld({{wall.positions, wall.triangles, {}}});
+  ASSERT_EQ(CountEdges(mesh, 3), kSide);
+  const AttributedMesh small = AttributedSimplification(mesh, {}).MeshWith(300);
+  EXPECT_LE(small.surface.triangles.size(), 300u);
+  EXPECT_EQ(CountEdges(small, 3), kSide);
 }
 
 TEST(AttributedSimplificationTest, EverySizeOfEveryShapeIsSound) {

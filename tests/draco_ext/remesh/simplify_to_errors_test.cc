@@ -99,6 +99,25 @@ TEST(SimplifyToErrorsTest, OnlyWhatTurnsBesidesTheOriginalsOwnCounts) {
   EXPECT_NEAR(meter.value().Measure(mesh, 1000).value().against_normals, 1.0 / 192, 1e-6);
 }
 
+TEST(SimplifyToErrorsTest, SmallPartsAreSearchedWithFewerSamples) {
+  EXPECT_EQ(SamplesToTell(12, 10'000), 2000u);
+  EXPECT_EQ(SamplesToTell(250, 10'000), 4000u);
+  EXPECT_EQ(SamplesToTell(625, 10'000), 10'000u);
+  EXPECT_EQ(SamplesToTell(1'000'000, 100'000), 100'000u);
+  EXPECT_EQ(SamplesToTell(12, 500), 500u);
+}
+
+// A part of few triangles, about which few samples are asked: what it is held to is measured with all.
+TEST(SimplifyToErrorsTest, SmallPartsMeetTheirTargets) {
+  const AttributedMesh mesh = WeldSoups({shapes::TexturedGrid(8, 8, 0.3f)}).value();
+  const ErrorTargets targets{8e-3, {3, 8}};
+  const SimplifiedSurface result = Simplify(mesh, targets);
+  EXPECT_LT(result.mesh.surface.triangles.size(), mesh.surface.triangles.size());
+  const SurfaceErrors errors = SurfaceErrorMeter::Create(mesh).value().Measure(result.mesh, 100'000).value();
+  EXPECT_LE(WorstRatio(errors, targets), 1);
+  EXPECT_GE(WorstRatio(errors, targets), 0.7);
+}
+
 TEST(SimplifyToErrorsTest, TargetsAreByKind) {
   VertexSoup soup = shapes::TexturedGrid(2, 2);
   soup.attributes.push_back({"COLOR_0", AttributeKind::kColor, 1, std::vector<float>(9, 0.5f)});

@@ -141,6 +141,18 @@ TEST(PlyReader, HoldsCountsAgainstTheFile) {
           .ok());
 }
 
+// As grids of depth cameras have them where nothing was seen.
+TEST(PlyReader, VerticesWithoutAPositionMayBeThereWhileNoTriangleUsesThem) {
+  const std::string body = "nan nan nan 255\n0 0 0 255\n1 0 0 255\n1 1 0 255\n0 inf 0 255\n3 1 2 3 7\n";
+  const auto mesh = Parse(FromText(Header("ascii", "5", "1") + body));
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  EXPECT_THAT(mesh.value().triangles, ElementsAre(Triangle{1, 2, 3}));
+  ASSERT_EQ(mesh.value().positions.size(), 5u);
+  EXPECT_EQ(mesh.value().positions[0], (Vec3f{0, 0, 0}));
+  EXPECT_EQ(mesh.value().positions[4], (Vec3f{0, 0, 0}));
+  EXPECT_THAT(MessageOf(Header("ascii", "5", "2") + body + "3 2 3 4 7\n"), AllOf(HasSubstr("line 17"), HasSubstr("vertex 4"), HasSubstr("finite")));
+}
+
 TEST(PlyReader, NamesWhatIsWrong) {
   const std::string header = Header("ascii", "4", "2");
   EXPECT_THAT(MessageOf(header + "0 0 0 255\nnan 0 0 255\n1 1 0 255\n0 1 0 255\n4 0 1 2 3 7\n3 0 2 3 7\n"),
