@@ -1,12 +1,14 @@
 #include "pack/family_plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "decoder/smooth_normals.h"
 #include "document/normals.h"
 #include "lacerta/surface_distance.h"
 #include "pack/family_candidate.h"
@@ -70,11 +72,17 @@ bool PlanStream(const FamilyContext& context, const FamilyMeter& meter, uint64_t
   return true;
 }
 
+// The plan of a member (an index of sources) of which nothing is known but a reason against a stream.
+PrimitivePlan Untouched(const FamilyContext& context, size_t member, const std::string& reason) {
+  PrimitivePlan plan = UntouchedPlan(*context.scene, member);
+  plan.weight = context.scene->families.families[context.family].weight;
+  plan.report.reason = reason;
+  return plan;
+}
+
 // Small surfaces, or such as many nodes show: the description would take more than is saved.
 void LeaveAsItIs(const FamilyContext& context, uint64_t stream_bytes, PrimitivePlan* plan) {
-  *plan = UntouchedPlan(*context.scene, context.members()[0]);
-  plan->weight = context.scene->families.families[context.family].weight;
-  plan->report.reason = "compressed it would be larger (" + std::to_string(stream_bytes) + " bytes with its description)";
+  *plan = Untouched(context, context.members()[0], "compressed it would be larger (" + std::to_string(stream_bytes) + " bytes with its description)");
 }
 
 // A family in Draco form, with all vertices or simplified.
@@ -116,26 +124,54 @@ DracoChoice SmallestDraco(const FamilyContext& context, const FamilyMeter& meter
   return choice;
 }
 
+// What a reader derives from the stream of a surface has to meet the targets of normals, as normals that are stored do.
+Status CheckDerivedNormals(const FamilyMeter& meter, const EncodedMesh& encoded) {
+  const std::optional<size_t> normals = meter.status().ok() ? meter.IndexOf("NORMAL") : std::nullopt;
+  if (!normals.has_value()) return Status();
+  LACERTA_ASSIGN_OR_RETURN(const DecodedMesh decoded, DecodeMesh(encoded.stream, {}));
+  const TriangleMesh& mesh = decoded.mesh;
+  const Primitive shown{mesh.positions.size(), mesh.triangles,
+                        {{"POSITION", MakeFloatAccessor(mesh.positions)}, {"NORMAL", MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles))}}};
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, meter.Measure({&shown}));
+  const double degrees = errors.attributes[*normals].rms_99;
+  if (degrees > meter.targets().attributes[*normals]) {
+    const long tenths = std::lround(10.0 * degrees);
+    return Unsupported("normals that readers derive would be " + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " degrees off");
+  }
+  if (errors.MostTurned() > meter.targets().turned) return Unsupported("too much of the area would turn away from its normals");
+  return Status();
+}
+
 // The smallest of what there is, Draco with all vertices and Draco of a simplified surface, for a whole family: one that
 // stayed as it is would come apart from neighbors that are rounded.
 void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plans) {
-  const bool is_stream = (*plans)[0].progressive.has_value();
-  uint64_t least = context.BytesBefore();
-  if (is_stream) {
-    const uint64_t stream_bytes = (*plans)[0].progressive->stream.size() + context.DracoJsonBytes() + context.ProgressiveJsonBytes();
-    if (stream_bytes >= least) return LeaveAsItIs(context, stream_bytes, &plans->front());
-    least = stream_bytes;
-  }
+  PrimitivePlan& first = plans->front();
+  const bool always_stream = context.options->encode.levels == LevelChoice::kAlways;
+  const auto stream_bytes = [&] { return first.progressive->stream.size() + context.DracoJsonBytes() + context.ProgressiveJsonBytes(); };
+  if (first.progressive && !always_stream && stream_bytes() >= context.BytesBefore()) return LeaveAsItIs(context, stream_bytes(), &first);
   const StatusOr<std::optional<Skin>> skin = context.FindSkin();
   FamilyMeter meter(context.Primitives(), context.Error(), context.options->attributes, context.scene->texel_side,
                     context.Scale(), skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
+  std::optional<PrimitivePlan> without_normals;  // whose derived normals are too far off
+  if (first.progressive && first.smooth_normals) {
+    const Status normals = CheckDerivedNormals(meter, *first.progressive);
+    if (!normals.ok()) without_normals = std::exchange(first, Untouched(context, context.members()[0], normals.message()));
+  }
+  const bool is_stream = first.progressive.has_value();
+  if (is_stream && always_stream) return;
+  uint64_t least = is_stream ? stream_bytes() : context.BytesBefore();
   const bool has_use_for_proxy = context.options->simplify && !is_stream && !context.HasTargets();
   const Status coarser = has_use_for_proxy ? meter.UseProxy() : Status();
   DracoChoice choice = SmallestDraco(context, meter, skin.ok() ? coarser : skin.status(), is_stream, least);
   StatusOr<FamilyCandidate>& chosen = choice.smallest;
   if (chosen.ok()) least = chosen.value().bytes;
-  const bool may_stream = coarser.ok() || context.options->encode.levels == LevelChoice::kAlways;
+  const bool may_stream = coarser.ok() || always_stream;
   if (!is_stream && may_stream && PlanStream(context, meter, least, plans)) return;
+  if (always_stream && without_normals) {
+    AddReason(first.report.reason, &without_normals->report);
+    first = *std::move(without_normals);
+    return;
+  }
   for (size_t m = 0; m < plans->size(); ++m) {
     PrimitivePlan& plan = (*plans)[m];
     if (!chosen.ok()) {
@@ -243,8 +279,7 @@ StatusOr<std::vector<PrimitivePlan>> PlanFamily(const FamilyContext& context) {
   const PackOptions& options = *context.options;
   std::vector<PrimitivePlan> plans;
   for (const size_t member : context.members()) {
-    PrimitivePlan plan = UntouchedPlan(*context.scene, member);
-    plan.weight = context.scene->families.families[context.family].weight;
+    PrimitivePlan plan = Untouched(context, member, "");
     plan.report.reason = ReasonAgainstProgressive(context, member, &plan.smooth_normals);
     if (plan.report.reason.empty()) {
       const Status status = PlanProgressive(context.scene->sources[member], OptionsOf(context), &plan);
@@ -253,7 +288,8 @@ StatusOr<std::vector<PrimitivePlan>> PlanFamily(const FamilyContext& context) {
     plans.push_back(std::move(plan));
   }
   const bool is_stream = plans[0].progressive.has_value(), plain = options.fallback == Fallback::kPlain;
-  if (is_stream && (options.encode.levels == LevelChoice::kAlways || IsRate(options.encode.target) || plain)) return plans;
+  const bool is_chosen = options.encode.levels == LevelChoice::kAlways && !plans[0].smooth_normals;
+  if (is_stream && (is_chosen || IsRate(options.encode.target) || plain)) return plans;
   if (!plain) {
     PlanTogether(context, &plans);
     return plans;

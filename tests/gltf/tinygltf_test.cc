@@ -65,6 +65,7 @@ const Bytes& Packed(Fallback fallback) {
   PackOptions options;
   options.encode.target = {EncodeTarget::Kind::kPsnr, 74.0};
   options.encode.levels = LevelChoice::kAlways;
+  options.attributes.normal_degrees = 10.0;  // which those that readers derive meet
   options.fallback = fallback;
   return known.emplace(fallback, PackGltf(Scene(), options).value().glb).first->second;
 }

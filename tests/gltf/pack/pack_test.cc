@@ -31,6 +31,8 @@ PackOptions Options(Fallback fallback) {
   PackOptions options;
   options.encode.target = {EncodeTarget::Kind::kPsnr, 45.0};
   options.encode.levels = LevelChoice::kAlways;  // small meshes as here are smaller without
+  options.attributes.normal_degrees = 30.0;      // which those that readers derive meet, as little as is left of the balls
+  options.attributes.turned = 0.1;
   options.fallback = fallback;
   return options;
 }
@@ -346,6 +348,31 @@ TEST(Pack, NothingGrowsByItsDescription) {
       EXPECT_THAT(report.reason, HasSubstr("compressed it would be larger"));
     }
   }
+}
+
+// The same ball with bounds that normals derived from its stream meet, and that they do not.
+TEST(Pack, DerivedNormalsAreHeldToTheirTarget) {
+  const TriangleMesh ball = WavySphere(40, 64);
+  AssetBuilder builder;
+  Json primitive = builder.Primitive(ball);
+  primitive["attributes"]["NORMAL"] = builder.AddFloats(SmoothNormals(ball.positions, ball.triangles), false);
+  builder.AddMesh("ball", Json::array({primitive}));
+  const Bytes asset = builder.Glb();
+  PackOptions options;
+  options.encode.target = {EncodeTarget::Kind::kPsnr, 60.0};
+  options.attributes.normal_degrees = 10.0;
+  const PackResult loose = PackGltf(asset, options).value();
+  ASSERT_EQ(loose.report.primitives[0].storage, PrimitiveStorage::kProgressive);
+  EXPECT_TRUE(ParseProgressive(ParseGltf(loose.glb, "").value()).value().streams[0].smooth_normals);
+  options.attributes.normal_degrees = 0.5;
+  const PackResult tight = PackGltf(asset, options).value();
+  const PrimitiveReport& report = tight.report.primitives[0];
+  EXPECT_THAT(report.reason, HasSubstr("normals that readers derive would be"));
+  EXPECT_GT(tight.glb.size(), loose.glb.size());
+  ASSERT_EQ(report.attributes.size(), 1u);
+  EXPECT_EQ(report.attributes[0].name, "NORMAL");
+  EXPECT_LE(report.attributes[0].error, 0.5);
+  EXPECT_GE(report.attributes[0].error, 0.2);
 }
 
 TEST(Pack, BadInputIsNamed) {
