@@ -1,5 +1,6 @@
 #include "remesh/face_neighbors.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -60,6 +61,15 @@ std::vector<uint8_t> Minority(const TriangleMesh& mesh, ParityForest* forest) {
   return flipped;
 }
 
+// Whether pairs around an edge leave a corner of a large sheet alone: sheets that went on in each other there would move away from its border.
+bool LeaveALargeSheet(Span<const uint32_t> corners, const std::vector<CornerPair>& pairs, ParityForest* sheets) {
+  constexpr uint32_t kLarge = 500;  // faces; smaller ones are no surfaces to refine
+  return std::any_of(corners.begin(), corners.end(), [&](uint32_t c) {
+    const bool is_alone = std::none_of(pairs.begin(), pairs.end(), [&](const CornerPair& pair) { return pair.first == c || pair.second == c; });
+    return is_alone && sheets->SizeOf(c / 3) >= kLarge;
+  });
+}
+
 }  // namespace
 
 FaceNeighbors FindNeighbors(const TriangleMesh& mesh, const EdgeCorners& edges) {
@@ -80,6 +90,7 @@ FaceNeighbors FindNeighbors(const TriangleMesh& mesh, const EdgeCorners& edges) 
   for (uint32_t e = 0; e < edges.num_edges(); ++e) {
     if (edges.of(e).size() <= 2) continue;
     const std::vector<CornerPair> around = PairAroundEdge(mesh, within_sheets, edges.of(e));
+    if (LeaveALargeSheet(edges.of(e), around, &forest)) continue;
     pairs.insert(pairs.end(), around.begin(), around.end());
   }
   JoinPairs(mesh, pairs, within_sheets, &forest, &result.mate);

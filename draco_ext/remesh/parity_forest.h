@@ -50,6 +50,9 @@ class ParityForest {
     return true;
   }
 
+  // How many are in the set of a.
+  uint32_t SizeOf(uint32_t a) { return size_[Find(a).root]; }
+
  private:
   std::vector<uint32_t> parent_;
   std::vector<uint8_t> parity_;

@@ -362,4 +362,26 @@ std::vector<NamedShape> AllShapes() {
   return shapes;
 }
 
+TriangleMesh SheetsAroundACurve(uint32_t num_sheets, uint32_t rows, uint32_t columns) {
+  TriangleMesh mesh;
+  for (uint32_t i = 0; i <= rows; ++i) mesh.positions.push_back({0, 0, static_cast<float>(i)});
+  for (uint32_t s = 0; s < num_sheets; ++s) {
+    const double angle = 2 * kPi * s / num_sheets;
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    for (uint32_t j = 1; j <= columns; ++j) {
+      const auto x = static_cast<float>(j * std::cos(angle)), y = static_cast<float>(j * std::sin(angle));
+      for (uint32_t i = 0; i <= rows; ++i) mesh.positions.push_back({x, y, static_cast<float>(i)});
+    }
+    const auto at = [&](uint32_t i, uint32_t j) { return j == 0 ? i : first + (j - 1) * (rows + 1) + i; };
+    for (uint32_t i = 0; i < rows; ++i) {
+      for (uint32_t j = 0; j < columns; ++j) {
+        mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j + 1)});
+        mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i + 1, j)});
+      }
+    }
+  }
+  for (Vec3f& p : mesh.positions) p += Vec3f{2 * std::sin(0.2f * p.z), 2 * std::cos(0.15f * p.z), 0};
+  return mesh;
+}
+
 }  // namespace lacerta::shapes

@@ -82,6 +82,9 @@ struct NamedShape {
 // One of each of the above but those that are said not to be, a few hundred to a few thousand faces.
 std::vector<NamedShape> AllShapes();
 
+// `num_sheets` sheets of `rows` x `columns` squares, halved into triangles, that leave a wavy curve at equal angles, as films of foam do.
+TriangleMesh SheetsAroundACurve(uint32_t num_sheets, uint32_t rows, uint32_t columns);
+
 }  // namespace lacerta::shapes
 
 #endif  // LACERTA_TESTS_SHAPES_SHAPES_H_

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <ctime>
+#include <map>
 #include <numeric>
 #include <random>
 #include <string>
@@ -167,6 +169,48 @@ TEST(EncodeRobustnessTest, SoupsAreEncodedAsTheyAre) {
 }
 
 // Far from zero floats are coarse: from steps of 1/128 of the radius to triangles that fall together.
+// At every level the edges where three sheets meet are edges of all three, and no border comes off them.
+TEST(EncodeRobustnessTest, ThreeSheetsStayJoinedWhereTheyMeet) {
+  constexpr uint32_t kRows = 32;
+  EncodeOptions options;
+  options.target.value = 60.0;
+  options.levels = LevelChoice::kAlways;
+  const EncodedMesh encoded = EncodeMesh(shapes::SheetsAroundACurve(3, kRows, 24), options).value();
+  const int num_levels = DecodeMesh(encoded.stream, {}).value().num_levels;
+  ASSERT_GE(num_levels, 1);
+  for (int level = 0; level <= num_levels; ++level) {
+    SCOPED_TRACE(level);
+    DecodeOptions decode;
+    decode.max_level = level;
+    const TriangleMesh mesh = DecodeMesh(encoded.stream, decode).value().mesh;
+    std::map<std::array<float, 3>, uint32_t> points;
+    std::map<std::pair<uint32_t, uint32_t>, int> num_faces;
+    std::vector<Vec3f> places;
+    const auto point = [&](uint32_t v) {
+      const Vec3f& p = mesh.positions[v];
+      const auto [found, is_new] = points.emplace(std::array<float, 3>{p.x, p.y, p.z}, static_cast<uint32_t>(places.size()));
+      if (is_new) places.push_back(p);
+      return found->second;
+    };
+    for (const Triangle& t : mesh.triangles) {
+      for (size_t k = 0; k < 3; ++k) {
+        const uint32_t a = point(t[k]), b = point(t[(k + 1) % 3]);
+        ++num_faces[{std::min(a, b), std::max(a, b)}];
+      }
+    }
+    const auto is_near = [](const Vec3f& p) { return std::hypot(p.x - 2 * std::sin(0.2f * p.z), p.y - 2 * std::cos(0.15f * p.z)) < 3; };
+    float joined = 0, parted = 0;  // lengths along the curve
+    for (const auto& [edge, count] : num_faces) {
+      const Vec3f &p = places[edge.first], &q = places[edge.second];
+      const float height = std::abs(p.z - q.z);
+      if (count == 3) joined += height;
+      if (count == 1 && is_near(p) && is_near(q) && height > 0.1f) parted += height;
+    }
+    EXPECT_GT(joined, 0.98f * kRows);
+    EXPECT_LT(parted, 0.02f * kRows);
+  }
+}
+
 TEST(EncodeRobustnessTest, SurfacesFarFromZeroAreEncoded) {
   const TriangleMesh scan = shapes::BumpySphere(5, 0.2f, 0.002f);
   for (const float offset : {1e5f, 1e6f, 1e7f}) EXPECT_EQ(Encode(Moved(scan, 1.0f, {offset, offset, offset}), LevelChoice::kWhereTheyPay), "") << offset;

@@ -168,6 +168,14 @@ TEST(MakeManifold, TheThirdSheetAtAnEdgeIsCutOff) {
   ExpectReport(Made(mesh).report, 0, 1, 2, 2, 2);
 }
 
+// Of an odd number of sheets one would stay alone at a border that the others know nothing of: all are cut, and their borders are one curve.
+TEST(MakeManifold, LargeSheetsAreAllCutWhereOneWouldStayAlone) {
+  EXPECT_EQ(Made(shapes::SheetsAroundACurve(3, 16, 16)).report.components, 3u);
+  EXPECT_EQ(Made(shapes::SheetsAroundACurve(5, 16, 16)).report.components, 5u);
+  EXPECT_EQ(Made(shapes::SheetsAroundACurve(4, 16, 16)).report.components, 2u);  // two pass through each other
+  EXPECT_LT(Made(shapes::SheetsAroundACurve(3, 16, 4)).report.components, 3u);  // small ones are no surfaces to refine
+}
+
 TEST(MakeManifold, DoubleSheetBecomesTwo) {
   const ManifoldMesh made = Made(shapes::DoubleSheet(8, 6));
   // 8 * 6 cells have 48 diagonals, 8 * 5 and 7 * 6 edges inside and 28 on the rim; all 63 vertices become two.
