@@ -61,13 +61,16 @@ std::vector<uint8_t> Minority(const TriangleMesh& mesh, ParityForest* forest) {
   return flipped;
 }
 
-// Whether pairs around an edge leave a corner of a large sheet alone: sheets that went on in each other there would move away from its border.
+// Whether three large sheets or more meet at an edge and pairs leave one of them alone: those that went on in each other would move away from
+// its border.
 bool LeaveALargeSheet(Span<const uint32_t> corners, const std::vector<CornerPair>& pairs, ParityForest* sheets) {
-  constexpr uint32_t kLarge = 500;  // faces; smaller ones are no surfaces to refine
-  return std::any_of(corners.begin(), corners.end(), [&](uint32_t c) {
-    const bool is_alone = std::none_of(pairs.begin(), pairs.end(), [&](const CornerPair& pair) { return pair.first == c || pair.second == c; });
-    return is_alone && sheets->SizeOf(c / 3) >= kLarge;
-  });
+  constexpr uint32_t kLarge = 500;  // faces; smaller ones are no surfaces to refine, but flaps on those that are
+  const auto is_large = [&](uint32_t c) { return sheets->SizeOf(c / 3) >= kLarge; };
+  const auto is_alone = [&](uint32_t c) {
+    return std::none_of(pairs.begin(), pairs.end(), [&](const CornerPair& pair) { return pair.first == c || pair.second == c; });
+  };
+  return std::count_if(corners.begin(), corners.end(), is_large) > 2 &&
+         std::any_of(corners.begin(), corners.end(), [&](uint32_t c) { return is_large(c) && is_alone(c); });
 }
 
 }  // namespace

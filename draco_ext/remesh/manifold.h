@@ -40,8 +40,8 @@ struct ManifoldMesh {
 //   Orientation: faces are turned to agree with their neighbors so that the lesser area of a component is turned. First
 //     those neighbors are joined that agree already, so where no orientation suits all (Moebius band), the edges that
 //     are cut are ones that disagreed in the input.
-//   More than two faces at an edge: PairAroundEdge (remesh/edge_pairing.h); faces that find no partner get a border. Where one of
-//     a large sheet is left alone, all get one, so that the borders are one curve and no sheet moves away from the others.
+//   More than two faces at an edge: PairAroundEdge (remesh/edge_pairing.h); faces that find no partner get a border. Where three
+//     or more of large sheets meet and one is left alone, all get one, so that the borders are one curve and no sheet moves away from the others.
 //   The two sides of a double sheet are never neighbors, so its rim is cut.
 //   Vertices of more than 65,534 faces, which no Topology holds, are cut into parts.
 // Which faces are neighbors does not depend on anything but the mesh. O(n log n).
