@@ -10,8 +10,8 @@
 
 namespace lacerta {
 
-// The side of the texture that texels are of: the longest of the asset's images, but at least 1024. Smaller ones are
-// often placeholders, and the geometry outlives them.
+// The side of the texture that texels are of: the longest of the asset's images, but at least 1024. Smaller ones
+// often stand in for others, and the geometry outlives them.
 uint64_t TexelSide(const GltfDocument& document);
 
 // Texels along one unit of TEXCOORD_`set` where it is stretched most: `side`, times the largest scale by which
