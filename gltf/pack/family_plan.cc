@@ -124,8 +124,46 @@ DracoChoice SmallestDraco(const FamilyContext& context, const FamilyMeter& meter
   return choice;
 }
 
-// What a reader derives from the stream of a surface has to meet the targets of normals, as normals that are stored do.
-Status CheckDerivedNormals(const FamilyMeter& meter, const EncodedMesh& encoded) {
+// An error is the scene's.
+EncodeOptions OptionsOf(const FamilyContext& context) {
+  EncodeOptions options = context.options->encode;
+  const double diagonal = context.scene->families.families[context.family].diagonal;
+  if (options.target.kind == EncodeTarget::Kind::kPsnr) {
+    options.target.value = Psnr(context.Error(), diagonal);
+  } else if (options.target.kind == EncodeTarget::Kind::kError && diagonal > 0.0) {
+    options.target.value = context.Error() / diagonal;
+  }
+  return options;
+}
+
+// A stream of the shape alone, of a family of one primitive; where none comes of it, the report says why. Fails where the options are at fault.
+Status PlanProgressive(const FamilyContext& context, PrimitivePlan* plan) {
+  const EncodeOptions options = OptionsOf(context);
+  PrimitiveReport& report = plan->report;
+  StatusOr<EncodedMesh> encoded = EncodeMesh(Surface(*context.Primitives()[0]), options);
+  if (encoded.status().code() == StatusCode::kInvalidArgument) return encoded.status().WithContext(PlaceName(*context.scene->document, plan->places[0]));
+  if (!encoded.ok()) {
+    report.reason = encoded.status().message();
+    return Status();
+  }
+  const EncodedMesh& mesh = encoded.value();
+  if (mesh.part_sizes.empty() || mesh.part_sizes.size() != mesh.report.levels.size()) {
+    return InternalError("the encoder reported another number of levels than it wrote");
+  }
+  report.storage = PrimitiveStorage::kProgressive;
+  report.reason = mesh.report.reason;
+  report.bytes_after = mesh.stream.size();
+  report.encode = mesh.report;
+  report.target_error = options.target.kind == EncodeTarget::Kind::kPsnr
+                            ? DistanceOfPsnr(options.target.value, mesh.report.diagonal)
+                        : options.target.kind == EncodeTarget::Kind::kError ? options.target.value * mesh.report.diagonal
+                                                                            : 0.0;
+  plan->progressive = std::move(encoded).value();
+  return Status();
+}
+
+// What a reader derives from the stream of a surface has to meet the targets of normals, as normals that are stored do, or those targets that many times.
+Status CheckDerivedNormals(const FamilyMeter& meter, const EncodedMesh& encoded, double slack = 1.0) {
   const std::optional<size_t> normals = meter.status().ok() ? meter.IndexOf("NORMAL") : std::nullopt;
   if (!normals.has_value()) return Status();
   LACERTA_ASSIGN_OR_RETURN(const DecodedMesh decoded, DecodeMesh(encoded.stream, {}));
@@ -134,43 +172,70 @@ Status CheckDerivedNormals(const FamilyMeter& meter, const EncodedMesh& encoded)
                         {{"POSITION", MakeFloatAccessor(mesh.positions)}, {"NORMAL", MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles))}}};
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrors errors, meter.Measure({&shown}));
   const double degrees = errors.attributes[*normals].rms_99;
-  if (degrees > meter.targets().attributes[*normals]) {
+  if (degrees > slack * meter.targets().attributes[*normals]) {
     const long tenths = std::lround(10.0 * degrees);
     return Unsupported("normals that readers derive would be " + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " degrees off");
   }
-  if (errors.MostTurned() > meter.targets().turned) return Unsupported("too much of the area would turn away from its normals");
+  if (errors.MostTurned() > slack * meter.targets().turned) return Unsupported("too much of the area would turn away from its normals");
   return Status();
 }
 
-// The smallest of what there is, Draco with all vertices and Draco of a simplified surface, for a whole family: one that
-// stayed as it is would come apart from neighbors that are rounded.
-void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plans) {
+// Not OK where a stream of the shape that was hardly searched for tells that normals derived from it are out of question.
+Status CheckNormalsOfRoughStream(const FamilyContext& context, const FamilyMeter& meter) {
+  constexpr double kSlack = 2;  // scans differ by a twentieth between efforts, surfaces with creases by more
+  EncodeOptions options = OptionsOf(context);
+  if (options.effort == Effort::kFast) return Status();
+  options.effort = Effort::kFast;
+  options.progress = nullptr;
+  const StatusOr<EncodedMesh> rough = EncodeMesh(Surface(*context.Primitives()[0]), options);
+  return rough.ok() ? CheckDerivedNormals(meter, rough.value(), kSlack) : Status();
+}
+
+// PlanProgressive, and whether normals that readers derive from the stream are near enough: *normals. Where they are not, the plan holds no stream.
+Status PlanShape(const FamilyContext& context, const FamilyMeter& meter, PrimitivePlan* plan, Status* normals) {
+  if (plan->smooth_normals) *normals = CheckNormalsOfRoughStream(context, meter);
+  if (normals->ok()) {
+    LACERTA_RETURN_IF_ERROR(PlanProgressive(context, plan));
+    if (plan->smooth_normals && plan->progressive) *normals = CheckDerivedNormals(meter, *plan->progressive);
+  }
+  if (!normals->ok()) *plan = Untouched(context, context.members()[0], normals->message());
+  return Status();
+}
+
+// The smallest of what there is, a stream of the shape, Draco with all vertices and Draco of a simplified surface, for a whole family: one that
+// stayed as it is would come apart from neighbors that are rounded. may_be_shape: whether the family is of a kind that a shape alone may stand for.
+Status PlanTogether(const FamilyContext& context, bool may_be_shape, std::vector<PrimitivePlan>* plans) {
   PrimitivePlan& first = plans->front();
   const bool always_stream = context.options->encode.levels == LevelChoice::kAlways;
-  const auto stream_bytes = [&] { return first.progressive->stream.size() + context.DracoJsonBytes() + context.ProgressiveJsonBytes(); };
-  if (first.progressive && !always_stream && stream_bytes() >= context.BytesBefore()) return LeaveAsItIs(context, stream_bytes(), &first);
   const StatusOr<std::optional<Skin>> skin = context.FindSkin();
   FamilyMeter meter(context.Primitives(), context.Error(), context.options->attributes, context.scene->texel_side,
                     context.Scale(), skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
-  std::optional<PrimitivePlan> without_normals;  // whose derived normals are too far off
-  if (first.progressive && first.smooth_normals) {
-    const Status normals = CheckDerivedNormals(meter, *first.progressive);
-    if (!normals.ok()) without_normals = std::exchange(first, Untouched(context, context.members()[0], normals.message()));
-  }
+  Status normals;
+  if (may_be_shape) LACERTA_RETURN_IF_ERROR(PlanShape(context, meter, &first, &normals));
   const bool is_stream = first.progressive.has_value();
-  if (is_stream && always_stream) return;
-  uint64_t least = is_stream ? stream_bytes() : context.BytesBefore();
+  if (is_stream && always_stream) return Status();
+  uint64_t least = context.BytesBefore();
+  if (is_stream) {
+    const uint64_t bytes = first.progressive->stream.size() + context.DracoJsonBytes() + context.ProgressiveJsonBytes();
+    if (bytes >= least) {
+      LeaveAsItIs(context, bytes, &first);
+      return Status();
+    }
+    least = bytes;
+  }
   const bool has_use_for_proxy = context.options->simplify && !is_stream && !context.HasTargets();
   const Status coarser = has_use_for_proxy ? meter.UseProxy() : Status();
   DracoChoice choice = SmallestDraco(context, meter, skin.ok() ? coarser : skin.status(), is_stream, least);
   StatusOr<FamilyCandidate>& chosen = choice.smallest;
   if (chosen.ok()) least = chosen.value().bytes;
   const bool may_stream = coarser.ok() || always_stream;
-  if (!is_stream && may_stream && PlanStream(context, meter, least, plans)) return;
-  if (always_stream && without_normals) {
-    AddReason(first.report.reason, &without_normals->report);
-    first = *std::move(without_normals);
-    return;
+  if (!is_stream && may_stream && PlanStream(context, meter, least, plans)) return Status();
+  if (always_stream && !normals.ok()) {  // levels without normals, rather than none
+    const std::string reason = first.report.reason;
+    LACERTA_RETURN_IF_ERROR(PlanProgressive(context, &first));
+    first.smooth_normals = first.progressive.has_value();
+    AddReason(reason, &first.report);
+    if (first.smooth_normals) return Status();
   }
   for (size_t m = 0; m < plans->size(); ++m) {
     PrimitivePlan& plan = (*plans)[m];
@@ -198,41 +263,6 @@ void PlanTogether(const FamilyContext& context, std::vector<PrimitivePlan>* plan
     plan.targets = std::move(candidate.targets);
     plan.draco = std::move(candidate.encoded);
   }
-}
-
-// An error is the scene's.
-EncodeOptions OptionsOf(const FamilyContext& context) {
-  EncodeOptions options = context.options->encode;
-  const double diagonal = context.scene->families.families[context.family].diagonal;
-  if (options.target.kind == EncodeTarget::Kind::kPsnr) {
-    options.target.value = Psnr(context.Error(), diagonal);
-  } else if (options.target.kind == EncodeTarget::Kind::kError && diagonal > 0.0) {
-    options.target.value = context.Error() / diagonal;
-  }
-  return options;
-}
-
-Status PlanProgressive(const Source& source, const EncodeOptions& options, PrimitivePlan* plan) {
-  PrimitiveReport& report = plan->report;
-  StatusOr<EncodedMesh> encoded = EncodeMesh(Surface(*source.primitive), options);
-  if (encoded.status().code() == StatusCode::kInvalidArgument) return encoded.status();
-  if (!encoded.ok()) {
-    report.reason = encoded.status().message();
-    return Status();
-  }
-  const EncodedMesh& mesh = encoded.value();
-  if (mesh.part_sizes.empty() || mesh.part_sizes.size() != mesh.report.levels.size()) {
-    return InternalError("the encoder reported another number of levels than it wrote");
-  }
-  report.storage = PrimitiveStorage::kProgressive;
-  report.reason = mesh.report.reason;
-  report.bytes_after = mesh.stream.size();
-  report.encode = mesh.report;
-  report.target_error = options.target.kind == EncodeTarget::Kind::kPsnr
-                            ? DistanceOfPsnr(options.target.value, mesh.report.diagonal)
-                        : options.target.kind == EncodeTarget::Kind::kError ? options.target.value * mesh.report.diagonal
-                                                                            : 0.0;
-  plan->progressive = std::move(encoded).value();
   return Status();
 }
 
@@ -281,17 +311,18 @@ StatusOr<std::vector<PrimitivePlan>> PlanFamily(const FamilyContext& context) {
   for (const size_t member : context.members()) {
     PrimitivePlan plan = Untouched(context, member, "");
     plan.report.reason = ReasonAgainstProgressive(context, member, &plan.smooth_normals);
-    if (plan.report.reason.empty()) {
-      const Status status = PlanProgressive(context.scene->sources[member], OptionsOf(context), &plan);
-      if (!status.ok()) return status.WithContext(PlaceName(*context.scene->document, plan.places[0]));
-    }
     plans.push_back(std::move(plan));
   }
-  const bool is_stream = plans[0].progressive.has_value(), plain = options.fallback == Fallback::kPlain;
-  const bool is_chosen = options.encode.levels == LevelChoice::kAlways && !plans[0].smooth_normals;
-  if (is_stream && (is_chosen || IsRate(options.encode.target) || plain)) return plans;
+  PrimitivePlan& first = plans[0];
+  const bool may_be_shape = first.report.reason.empty(), plain = options.fallback == Fallback::kPlain;
+  const bool is_wanted = options.encode.levels == LevelChoice::kAlways && !first.smooth_normals;
+  const bool has_no_rival = plain || is_wanted || IsRate(options.encode.target);
+  if (may_be_shape && has_no_rival) {
+    LACERTA_RETURN_IF_ERROR(PlanProgressive(context, &first));
+    if (first.progressive) return plans;
+  }
   if (!plain) {
-    PlanTogether(context, &plans);
+    LACERTA_RETURN_IF_ERROR(PlanTogether(context, may_be_shape && !has_no_rival, &plans));
     return plans;
   }
   for (PrimitivePlan& plan : plans) AddReason("left as it is so that every reader opens the asset", &plan.report);
