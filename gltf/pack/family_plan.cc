@@ -23,6 +23,7 @@ bool IsRate(const EncodeTarget& target) {
 }
 
 void AddReason(const std::string& reason, PrimitiveReport* report) {
+  if (reason.empty()) return;
   report->reason += (report->reason.empty() ? "" : "; ") + reason;
 }
 
@@ -162,6 +163,11 @@ Status PlanProgressive(const FamilyContext& context, PrimitivePlan* plan) {
   return Status();
 }
 
+FamilyMeter MeterOf(const FamilyContext& context, const StatusOr<std::optional<Skin>>& skin) {
+  return FamilyMeter(context.Primitives(), context.Error(), context.options->attributes, context.scene->texel_side, context.Scale(),
+                     skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
+}
+
 // What a reader derives from the stream of a surface has to meet the targets of normals, as normals that are stored do, or those targets that many times.
 Status CheckDerivedNormals(const FamilyMeter& meter, const EncodedMesh& encoded, double slack = 1.0) {
   const std::optional<size_t> normals = meter.status().ok() ? meter.IndexOf("NORMAL") : std::nullopt;
@@ -208,8 +214,7 @@ Status PlanTogether(const FamilyContext& context, bool may_be_shape, std::vector
   PrimitivePlan& first = plans->front();
   const bool always_stream = context.options->encode.levels == LevelChoice::kAlways;
   const StatusOr<std::optional<Skin>> skin = context.FindSkin();
-  FamilyMeter meter(context.Primitives(), context.Error(), context.options->attributes, context.scene->texel_side,
-                    context.Scale(), skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
+  FamilyMeter meter = MeterOf(context, skin);
   Status normals;
   if (may_be_shape) LACERTA_RETURN_IF_ERROR(PlanShape(context, meter, &first, &normals));
   const bool is_stream = first.progressive.has_value();
@@ -319,6 +324,9 @@ StatusOr<std::vector<PrimitivePlan>> PlanFamily(const FamilyContext& context) {
   const bool has_no_rival = plain || is_wanted || IsRate(options.encode.target);
   if (may_be_shape && has_no_rival) {
     LACERTA_RETURN_IF_ERROR(PlanProgressive(context, &first));
+    if (first.progressive && first.smooth_normals) {  // taken as it is, but not in silence
+      AddReason(CheckDerivedNormals(MeterOf(context, std::optional<Skin>()), *first.progressive).message(), &first.report);
+    }
     if (first.progressive) return plans;
   }
   if (!plain) {

@@ -51,7 +51,7 @@ enum class LevelChoice {
 
 // How much the encoder tries; decoding takes the same time whatever it was.
 enum class Effort {
-  kFast,    // one base size and fewer passes: a third of the time, 7 % more bytes
+  kFast,    // one base size and fewer passes: a third of the time, 6 % more bytes
   kNormal,
   kBest,    // all that kNormal tries, over every simplification of the input: 1.8 times the time, 1 % fewer bytes
 };

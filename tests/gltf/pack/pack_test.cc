@@ -373,6 +373,14 @@ TEST(Pack, DerivedNormalsAreHeldToTheirTarget) {
   EXPECT_EQ(report.attributes[0].name, "NORMAL");
   EXPECT_LE(report.attributes[0].error, 0.5);
   EXPECT_GE(report.attributes[0].error, 0.2);
+
+  // Where only a stream of the shape will do, it is taken, and the report says what that means.
+  options.fallback = Fallback::kPlain;
+  const PackResult plain = PackGltf(asset, options).value();
+  EXPECT_EQ(plain.report.primitives[0].storage, PrimitiveStorage::kProgressive);
+  EXPECT_THAT(plain.report.primitives[0].reason, HasSubstr("normals that readers derive would be"));
+  options.attributes.normal_degrees = 10.0;
+  EXPECT_THAT(PackGltf(asset, options).value().report.primitives[0].reason, Not(HasSubstr("normals")));
 }
 
 TEST(Pack, BadInputIsNamed) {
