@@ -163,6 +163,27 @@ Status PlanProgressive(const FamilyContext& context, PrimitivePlan* plan) {
   return Status();
 }
 
+// Makes a member in Draco form its plan. simplified_reason: why it is not simplified.
+void TakeDraco(const FamilyContext& context, DracoCandidate candidate, const std::string& simplified_reason, PrimitivePlan* plan) {
+  PrimitiveReport& report = plan->report;
+  if (plan->progressive) {
+    report.reason = "all its vertices in Draco are smaller than a stream (" + std::to_string(plan->progressive->stream.size()) + " bytes)";
+    report.encode = {};
+    plan->progressive.reset();
+    plan->smooth_normals = false;
+  }
+  AddReason(candidate.report.reason, &report);
+  AddReason(simplified_reason, &report);
+  report.storage = PrimitiveStorage::kDraco;
+  report.bytes_after = candidate.encoded.bytes.size() + BytesOfTargets(candidate.targets);
+  report.error = candidate.report.error;
+  report.target_error = context.Error();
+  report.position_bits = candidate.report.position_bits;
+  report.attributes = std::move(candidate.report.attributes);
+  plan->targets = std::move(candidate.targets);
+  plan->draco = std::move(candidate.encoded);
+}
+
 FamilyMeter MeterOf(const FamilyContext& context, const StatusOr<std::optional<Skin>>& skin) {
   return FamilyMeter(context.Primitives(), context.Error(), context.options->attributes, context.scene->texel_side, context.Scale(),
                      skin.ok() && skin.value().has_value() ? &*skin.value() : nullptr);
@@ -243,30 +264,11 @@ Status PlanTogether(const FamilyContext& context, bool may_be_shape, std::vector
     if (first.smooth_normals) return Status();
   }
   for (size_t m = 0; m < plans->size(); ++m) {
-    PrimitivePlan& plan = (*plans)[m];
-    if (!chosen.ok()) {
-      if (!is_stream) AddReason(chosen.status().message(), &plan.report);
-      continue;
+    if (chosen.ok()) {
+      TakeDraco(context, std::move(chosen.value().members[m]), choice.simplified_reason, &(*plans)[m]);
+    } else if (!is_stream) {
+      AddReason(chosen.status().message(), &(*plans)[m].report);
     }
-    DracoCandidate& candidate = chosen.value().members[m];
-    PrimitiveReport& report = plan.report;
-    if (is_stream) {
-      report.reason = "all its vertices in Draco are smaller than a stream (" +
-                      std::to_string(plan.progressive->stream.size()) + " bytes)";
-      report.encode = {};
-      plan.progressive.reset();
-      plan.smooth_normals = false;
-    }
-    if (!candidate.report.reason.empty()) AddReason(candidate.report.reason, &report);
-    if (!choice.simplified_reason.empty()) AddReason(choice.simplified_reason, &report);
-    report.storage = PrimitiveStorage::kDraco;
-    report.bytes_after = candidate.encoded.bytes.size() + BytesOfTargets(candidate.targets);
-    report.error = candidate.report.error;
-    report.target_error = context.Error();
-    report.position_bits = candidate.report.position_bits;
-    report.attributes = std::move(candidate.report.attributes);
-    plan.targets = std::move(candidate.targets);
-    plan.draco = std::move(candidate.encoded);
   }
   return Status();
 }
