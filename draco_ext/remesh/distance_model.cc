@@ -170,6 +170,10 @@ DistanceModel FitTarget::ModelAt(const TriangleMesh& mesh, const MeshNeighbors& 
   Add(forward, mesh, neighbors, &model.forward, &model);
 
   const std::vector<AreaSample> own = SampleEveryFace(mesh, tree.faces_in_tree_order(), static_cast<double>(num_samples_));
+  if (own.empty()) {
+    model.backward = diagonal_ * diagonal_;
+    return model;
+  }
   std::vector<Residual> backward(own.size());
   ForBlocks(own.size(), [&](size_t first, size_t last) {
     uint32_t hint = SurfacePoint::kNone;

@@ -50,7 +50,8 @@ class FitTarget {
 
   // Gauss-Newton model at `mesh`, from the target's samples and about as many on `mesh`. Every sample is held to the plane
   // through its closest point, upright on the way to it, so that value and gradient are those of the distance itself. Runs on all
-  // cores; the same on any number of them.
+  // cores; the same on any number of them. A mesh without area, as one on a lattice that is too coarse for it, is as far off as the
+  // target is large, as DecodedDistance takes it.
   DistanceModel ModelAt(const TriangleMesh& mesh, const MeshNeighbors& neighbors) const;
 
   double diagonal() const { return diagonal_; }

@@ -104,6 +104,19 @@ TEST_F(ZeroLevelSearchTest, MeetsThePsnrWhereMostFacesAreOnSmallParts) {
   }
 }
 
+// The target allows far more than the size of all that there is: the coarsest lattices leave no area, which is no reason to try every size.
+TEST_F(ZeroLevelSearchTest, EndsSoonWhereATriangleIsFarAway) {
+  constexpr float kAway = 30'000;
+  TriangleMesh mesh = mesh_;
+  const auto first = static_cast<uint32_t>(mesh.positions.size());
+  for (const Vec3f& corner : {Vec3f{kAway, 0, 0}, Vec3f{kAway, 0.02f, 0}, Vec3f{kAway, 0, 0.02f}}) mesh.positions.push_back(corner);
+  mesh.triangles.push_back({{first, first + 1, first + 2}});
+  const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(mesh).value();
+  const ZeroLevelStream stream = CodeZeroLevel(mesh, meter, {false, 0, 70.0}).value();
+  EXPECT_TRUE(stream.meets_target) << stream.psnr;
+  EXPECT_LE(stream.mesh.triangles.size(), 10);
+}
+
 TEST_F(ZeroLevelSearchTest, CodesEveryShape) {
   for (const shapes::NamedShape& shape : shapes::AllShapes()) {
     SCOPED_TRACE(shape.name);

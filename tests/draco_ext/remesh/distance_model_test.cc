@@ -52,6 +52,14 @@ TEST(DistanceModelTest, SeesSmallPartsOfManyFaces) {
   }
 }
 
+// As on a lattice that is too coarse for every triangle.
+TEST(DistanceModelTest, TakesAMeshWithoutAreaForFarOff) {
+  const TriangleMesh mesh = shapes::Icosphere(2);
+  const TriangleMesh without_area{{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}, {{0, 1, 2}}};
+  const FitTarget target(mesh, 2000);
+  EXPECT_DOUBLE_EQ(target.ModelAt(without_area, MeshNeighbors(without_area)).backward, target.diagonal() * target.diagonal());
+}
+
 TEST(DistanceModelTest, ForetellsWhatAMoveChanges) {
   const TriangleMesh mesh = shapes::BumpySphere(4, 0.2f);
   TriangleMesh moved = SimplificationSequence(mesh).MeshWith(200);
