@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,25 +18,47 @@ constexpr size_t kMostPoses = 6;
 constexpr size_t kMostJoints = size_t{1} << 16;
 constexpr size_t kMostTransforms = 1'000'000;  // of all joints in all poses that are looked at
 
-// The node shows a mesh of the sources by this skin. All of them have to agree.
-StatusOr<uint64_t> SkinIndex(const GltfDocument& document, const std::vector<const Source*>& sources) {
-  std::set<uint64_t> meshes;
-  for (const Source* source : sources) {
-    for (const Place& place : source->places) meshes.insert(place.mesh);
+// Whether skins move everything alike: by the same nodes, bound at the same places. Exporters write one for each mesh.
+bool AreAlike(const Json& a, const Json& b) {
+  const Json *a_binds = Find(a, "inverseBindMatrices"), *b_binds = Find(b, "inverseBindMatrices");
+  const bool same_binds = (a_binds == nullptr) == (b_binds == nullptr) && (a_binds == nullptr || *a_binds == *b_binds);
+  return same_binds && *Find(a, "joints") == *Find(b, "joints");
+}
+
+// The first skin that is like this one.
+uint64_t FirstAlike(const GltfDocument& document, uint64_t skin) {
+  const Json* json = FindElement(document.json, "skins", skin);
+  if (json == nullptr || Find(*json, "joints") == nullptr) return skin;
+  for (uint64_t s = 0; s < skin; ++s) {
+    const Json& other = *FindElement(document.json, "skins", s);
+    if (Find(other, "joints") != nullptr && AreAlike(other, *json)) return s;
   }
-  std::optional<uint64_t> skin;
+  return skin;
+}
+
+// By which nodes show the meshes of the sources: one, or several that all of these meshes have. None twice.
+StatusOr<std::set<uint64_t>> SkinsOf(const GltfDocument& document, const std::vector<const Source*>& sources) {
+  std::map<uint64_t, std::set<uint64_t>> skins_of_mesh;
+  for (const Source* source : sources) {
+    for (const Place& place : source->places) skins_of_mesh[place.mesh];
+  }
   for (uint64_t n = 0; n < ArraySize(document.json, "nodes"); ++n) {
     const Json& node = *FindElement(document.json, "nodes", n);
     const std::optional<uint64_t> mesh = AsIndex(Find(node, "mesh"));
-    if (!mesh.has_value() || meshes.count(*mesh) == 0) continue;
-    const std::optional<uint64_t> own = AsIndex(Find(node, "skin"));
-    if (!own.has_value()) return Unsupported("has joints, but node " + std::to_string(n) + " shows it without a skin");
-    if (skin.has_value() && *skin != *own)
-      return Unsupported("is moved by several skins, or touches what another one moves");
-    skin = own;
+    const auto known = mesh.has_value() ? skins_of_mesh.find(*mesh) : skins_of_mesh.end();
+    if (known == skins_of_mesh.end()) continue;
+    const std::optional<uint64_t> skin = AsIndex(Find(node, "skin"));
+    if (!skin.has_value()) return Unsupported("has joints, but node " + std::to_string(n) + " shows it without a skin");
+    known->second.insert(FirstAlike(document, *skin));
   }
-  if (!skin.has_value()) return Unsupported("has joints, but no node shows it with a skin");
-  return *skin;
+  std::set<uint64_t> skins;
+  for (const auto& [mesh, own] : skins_of_mesh) {
+    if (own.empty()) continue;
+    if (!skins.empty() && skins != own) return Unsupported("touches what another skin moves");
+    skins = own;
+  }
+  if (skins.empty()) return Unsupported("has joints, but no node shows it with a skin");
+  return skins;
 }
 
 bool IsFinite(const Transform& m) {
@@ -172,29 +195,55 @@ Status ScaleSmallPoses(const std::vector<const Source*>& sources, Skin* skin) {
   return Status();
 }
 
+// One of the skins by which nodes show a family.
+struct PosedSkin {
+  const Json* json = nullptr;
+  std::vector<Transform> inverse_binds;  // of each joint
+  double scale = 0.0;                    // from mesh units to those of the world in the first pose, which is the one at rest
+};
+
+StatusOr<PosedSkin> ReadSkin(const GltfDocument& document, uint64_t index) {
+  PosedSkin skin;
+  skin.json = FindElement(document.json, "skins", index);
+  const size_t num_joints = skin.json == nullptr ? 0 : static_cast<size_t>(ArraySize(*skin.json, "joints"));
+  if (num_joints == 0) return Unsupported("its skin has no joints");
+  if (num_joints > kMostJoints) return Unsupported("its skin has more joints than an index can name");
+  LACERTA_ASSIGN_OR_RETURN(skin.inverse_binds, ReadInverseBinds(document, *skin.json, num_joints));
+  return skin;
+}
+
+// Adds where the joints of `of_node` are in a pose to *skin, in mesh units, unless that is not finite.
+Status AddPose(const ScenePose& pose, PosedSkin* of_node, Skin* skin) {
+  LACERTA_ASSIGN_OR_RETURN(std::vector<Transform> joints, JointsIn(*of_node->json, of_node->inverse_binds, pose));
+  if (!std::all_of(joints.begin(), joints.end(), IsFinite)) return Status();
+  if (!(of_node->scale > 0.0)) of_node->scale = ScaleOf(MiddleOf(joints));
+  if (!(of_node->scale > 0.0)) return Unsupported("its skin shrinks it to nothing");
+  joints.resize(skin->num_joints);
+  for (Transform& m : joints) {
+    for (double& x : m) x /= of_node->scale;
+  }
+  skin->poses.push_back(std::move(joints));
+  return Status();
+}
+
 }  // namespace
 
 StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const Source*>& sources,
                         const std::vector<ScenePose>& poses) {
-  LACERTA_ASSIGN_OR_RETURN(const uint64_t index, SkinIndex(document, sources));
-  const Json* json = FindElement(document.json, "skins", index);
+  LACERTA_ASSIGN_OR_RETURN(const std::set<uint64_t> indices, SkinsOf(document, sources));
+  std::vector<PosedSkin> skins;
+  for (const uint64_t index : indices) {
+    LACERTA_ASSIGN_OR_RETURN(PosedSkin skin, ReadSkin(document, index));
+    skins.push_back(std::move(skin));
+  }
   Skin skin;
-  skin.num_joints = json == nullptr ? 0 : static_cast<size_t>(ArraySize(*json, "joints"));
-  if (skin.num_joints == 0) return Unsupported("its skin has no joints");
-  if (skin.num_joints > kMostJoints) return Unsupported("its skin has more joints than an index can name");
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<Transform> inverse_binds,
-                           ReadInverseBinds(document, *json, skin.num_joints));
-  double scale = 0.0;  // of the first pose, which is the one at rest
+  skin.num_joints = kMostJoints;  // that all of them have
+  for (const PosedSkin& of_node : skins) skin.num_joints = std::min(skin.num_joints, of_node.inverse_binds.size());
   for (const ScenePose& pose : poses) {
-    if ((skin.poses.size() + 1) * skin.num_joints > kMostTransforms) break;
-    LACERTA_ASSIGN_OR_RETURN(std::vector<Transform> joints, JointsIn(*json, inverse_binds, pose));
-    if (!std::all_of(joints.begin(), joints.end(), IsFinite)) continue;
-    if (!(scale > 0.0)) scale = ScaleOf(MiddleOf(joints));
-    if (!(scale > 0.0)) return Unsupported("its skin shrinks it to nothing");
-    for (Transform& m : joints) {
-      for (double& x : m) x /= scale;
+    for (PosedSkin& of_node : skins) {
+      if ((skin.poses.size() + 1) * skin.num_joints > kMostTransforms) break;
+      LACERTA_RETURN_IF_ERROR(AddPose(pose, &of_node, &skin));
     }
-    skin.poses.push_back(std::move(joints));
   }
   if (skin.poses.empty()) return Unsupported("its skin's matrices are not finite");
   LACERTA_ASSIGN_OR_RETURN(const Sample sample, TakeSample(sources, skin.num_joints));

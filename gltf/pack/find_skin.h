@@ -13,8 +13,9 @@
 
 namespace lacerta {
 
-// The skin of sources that belong together, with those of the scene's poses in which they differ most in shape. Fails
-// with kUnsupported, and the reason, where not all of them have one and the same, or it cannot be used.
+// The skin of sources that belong together, with those of the scene's poses in which they differ most in shape. Where nodes show all of
+// them by several skins, the poses are those of any of these, and the joints those that all of these have. Fails with kUnsupported, and
+// the reason, where not all sources have the same, or one cannot be used.
 StatusOr<Skin> FindSkin(const GltfDocument& document, const std::vector<const Source*>& sources,
                         const std::vector<ScenePose>& poses);
 
