@@ -117,12 +117,19 @@ Status CheckArea(const AttributedMesh& mesh, const GroupSurface& surface) {
   return Status();
 }
 
-Status CheckMatch(const GroupSurface& original, const GroupSurface& other) {
+std::vector<std::string> NamesOf(const AttributedMesh& mesh) {
+  std::vector<std::string> names;
+  for (const MeshAttribute& attribute : mesh.attributes) names.push_back(attribute.name);
+  return names;
+}
+
+// names: of the original's attributes.
+Status CheckMatch(const GroupSurface& original, const std::vector<std::string>& names, const GroupSurface& other) {
   const std::vector<MeshAttribute>&a = original.mesh().attributes, &b = other.mesh().attributes;
   if (a.size() != b.size()) return InvalidArgument("the surfaces do not have the same number of attributes");
   for (size_t i = 0; i < a.size(); ++i) {
-    if (a[i].name == b[i].name && a[i].kind == b[i].kind && a[i].components == b[i].components) continue;
-    return InvalidArgument("attribute " + std::to_string(i) + " is " + a[i].name + " of the original but " + b[i].name + " of the other surface");
+    if (names[i] == b[i].name && a[i].kind == b[i].kind && a[i].components == b[i].components) continue;
+    return InvalidArgument("attribute " + std::to_string(i) + " is " + names[i] + " of the original but " + b[i].name + " of the other surface");
   }
   std::set<uint32_t> groups;
   for (const GroupSurface* surface : {&original, &other}) {
@@ -142,16 +149,17 @@ AttributeError AttributeDistance::Worst(size_t attribute) const {
   return {std::max(a.rms_99, b.rms_99), std::max(a.rms, b.rms), std::max(a.max, b.max), std::min(a.share, b.share)};
 }
 
-AttributeDistanceMeter::AttributeDistanceMeter(std::unique_ptr<const Original> original) : original_(std::move(original)) {}
-AttributeDistanceMeter::AttributeDistanceMeter(AttributeDistanceMeter&&) noexcept = default;
-AttributeDistanceMeter& AttributeDistanceMeter::operator=(AttributeDistanceMeter&&) noexcept = default;
-AttributeDistanceMeter::~AttributeDistanceMeter() = default;
+AttributeDistanceMeter::AttributeDistanceMeter(std::shared_ptr<const Original> original, std::vector<std::string> names)
+    : original_(std::move(original)), names_(std::move(names)) {}
+
+AttributeDistanceMeter AttributeDistanceMeter::WithNames(std::vector<std::string> names) const { return {original_, std::move(names)}; }
 
 StatusOr<AttributeDistanceMeter> AttributeDistanceMeter::Create(AttributedMesh original) {
   LACERTA_RETURN_IF_ERROR(CheckAttributedMesh(original).WithContext("original"));
-  auto prepared = std::make_unique<const Original>(std::move(original));
+  auto prepared = std::make_shared<const Original>(std::move(original));
   LACERTA_RETURN_IF_ERROR(CheckArea(prepared->mesh, prepared->surface).WithContext("original"));
-  return AttributeDistanceMeter(std::move(prepared));
+  std::vector<std::string> names = NamesOf(prepared->mesh);
+  return AttributeDistanceMeter(std::move(prepared), std::move(names));
 }
 
 StatusOr<AttributeDistance> AttributeDistanceMeter::Measure(const AttributedMesh& mesh, const AttributeDistanceOptions& options) const {
@@ -161,7 +169,7 @@ StatusOr<AttributeDistance> AttributeDistanceMeter::Measure(const AttributedMesh
   LACERTA_RETURN_IF_ERROR(CheckAttributedMesh(mesh).WithContext("measured mesh"));
   const GroupSurface other(mesh);
   LACERTA_RETURN_IF_ERROR(CheckArea(mesh, other).WithContext("measured mesh"));
-  LACERTA_RETURN_IF_ERROR(CheckMatch(original_->surface, other));
+  LACERTA_RETURN_IF_ERROR(CheckMatch(original_->surface, names_, other));
   AttributeDistance result;
   result.forward = MeasureOneSide(original_->surface, other, original_->diagonal, options, &result.forward_turned);
   result.backward = MeasureOneSide(other, original_->surface, original_->diagonal, options, &result.backward_turned);

@@ -145,13 +145,13 @@ Status CheckAttributedMesh(const AttributedMesh& mesh) {
     for (size_t f = 0; f < num_faces; ++f) {
       const Triangle& t = attribute.corners[f];
       const bool has_none = t[0] == kNone && t[1] == kNone && t[2] == kNone;
-      const std::string place = attribute.name + ": triangle " + std::to_string(f);
-      if (!has_none && std::max({t[0], t[1], t[2]}) >= attribute.num_values()) return InvalidData(place + " refers to a value that is not there");
+      const auto place = [&] { return attribute.name + ": triangle " + std::to_string(f); };
+      if (!has_none && std::max({t[0], t[1], t[2]}) >= attribute.num_values()) return InvalidData(place() + " refers to a value that is not there");
       const size_t group = mesh.GroupOf(f);
       if (group >= kMaxGroups) return InvalidData("triangle " + std::to_string(f) + " is of group " + std::to_string(group) + ": number the groups from 0");
       if (presence.size() <= group) presence.resize(group + 1, 0);
       const uint8_t state = has_none ? 1 : 2;
-      if (presence[group] != 0 && presence[group] != state) return InvalidData(place + " is not like the others of its group, of which some have a value");
+      if (presence[group] != 0 && presence[group] != state) return InvalidData(place() + " is not like the others of its group, of which some have a value");
       presence[group] = state;
     }
   }

@@ -124,14 +124,11 @@ double Psnr(double distance, double diagonal) {
 
 double DistanceOfPsnr(double psnr, double diagonal) { return diagonal * std::pow(10.0, -psnr / 20.0); }
 
-SurfaceDistanceMeter::SurfaceDistanceMeter(std::unique_ptr<const Surface> original) : original_(std::move(original)) {}
-SurfaceDistanceMeter::SurfaceDistanceMeter(SurfaceDistanceMeter&&) noexcept = default;
-SurfaceDistanceMeter& SurfaceDistanceMeter::operator=(SurfaceDistanceMeter&&) noexcept = default;
-SurfaceDistanceMeter::~SurfaceDistanceMeter() = default;
+SurfaceDistanceMeter::SurfaceDistanceMeter(std::shared_ptr<const Surface> original) : original_(std::move(original)) {}
 
 StatusOr<SurfaceDistanceMeter> SurfaceDistanceMeter::Create(const TriangleMesh& original) {
   LACERTA_RETURN_IF_ERROR(CheckMesh(original).WithContext("original"));
-  auto surface = std::make_unique<Surface>(original, /*with_vertices=*/true);
+  auto surface = std::make_shared<Surface>(original, /*with_vertices=*/true);
   surface->diagonal = BoundingBoxDiagonal(original);
   if (!(surface->cumulated_area.back() > 0.0)) {
     return InvalidData("original: all triangles are degenerate, there is no area to sample");

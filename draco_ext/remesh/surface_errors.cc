@@ -79,6 +79,12 @@ StatusOr<SurfaceErrorMeter> SurfaceErrorMeter::Create(const AttributedMesh& orig
   return SurfaceErrorMeter(std::move(distance), std::move(attributes), texture_size, most_samples, ShareAgainstNormals(original), least_share);
 }
 
+SurfaceErrorMeter SurfaceErrorMeter::WithNames(std::vector<std::string> names) const {
+  SurfaceErrorMeter renamed = *this;
+  renamed.attributes_ = attributes_.WithNames(std::move(names));
+  return renamed;
+}
+
 StatusOr<SurfaceErrors> SurfaceErrorMeter::Measure(const AttributedMesh& mesh, uint64_t num_samples) const {
   // What only a part of the surface has must not be told by a handful of samples.
   constexpr double kFewest = 3000, kMost = 50'000;

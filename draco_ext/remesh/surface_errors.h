@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -50,10 +51,14 @@ double RangeOf(const MeshAttribute& attribute);
 // Share of the area that has the attribute, for each of the mesh; 1 where there is no area.
 std::vector<double> AttributeShares(const AttributedMesh& mesh);
 
+// Copies share what was prepared of the original.
 class SurfaceErrorMeter {
  public:
   // Copies the original. Fails as SurfaceDistanceMeter and AttributeDistanceMeter do.
   static StatusOr<SurfaceErrorMeter> Create(const AttributedMesh& original, double texture_size = 1024);
+
+  // The same for surfaces whose attributes go by other names; names: one for each attribute of the original.
+  SurfaceErrorMeter WithNames(std::vector<std::string> names) const;
 
   // num_samples: on each of the two surfaces, fewer where the original is small, more where a small part of it has an attribute.
   StatusOr<SurfaceErrors> Measure(const AttributedMesh& mesh, uint64_t num_samples) const;

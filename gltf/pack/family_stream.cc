@@ -33,6 +33,12 @@ std::vector<std::string> NamesOf(const AttributedBase& base) {
   return names;
 }
 
+std::vector<std::string> NamesOf(const AttributedMesh& mesh) {
+  std::vector<std::string> names;
+  for (const MeshAttribute& attribute : mesh.attributes) names.push_back(attribute.name);
+  return names;
+}
+
 Status DescribeLevels(const AttributedStream& stream, const SurfaceErrorMeter& meter, size_t num_groups,
                       ProgressiveStream* description) {
   constexpr uint64_t kSamples = 100'000;
@@ -140,13 +146,10 @@ StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, si
   if (family.skin() != nullptr) {
     LACERTA_ASSIGN_OR_RETURN(weighted, ToWeightedFamily(family));
   }
-  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh original,
-                           PlainNames(weighted ? std::move(weighted->original) : family.original()));
-  LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, SurfaceErrorMeter::Create(original, family.meter().texture_size()));
-  std::optional<AttributedMesh> proxy;  // of the family's own surface, which has no joints' weights
-  if (!weighted && family.has_proxy()) {
-    LACERTA_ASSIGN_OR_RETURN(proxy, PlainNames(family.simplifiable()));
-  }
+  // The family's own surface has no joints' weights.
+  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh surface, PlainNames(weighted ? std::move(weighted->original) : family.simplifiable()));
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, weighted ? SurfaceErrorMeter::Create(surface, family.meter().texture_size())
+                                                                   : StatusOr<SurfaceErrorMeter>(family.meter().WithNames(NamesOf(surface))));
   AttributedSearchOptions search;
   search.effort = effort;
   search.most_bytes = most_bytes;
@@ -165,7 +168,7 @@ StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, si
   }
   LACERTA_ASSIGN_OR_RETURN(
       const AttributedTrial trial,
-      SmallestAttributedStream(proxy ? *proxy : original, meter, weighted ? weighted->targets : family.targets(), search));
+      SmallestAttributedStream(surface, meter, weighted ? weighted->targets : family.targets(), search));
   return ToFamilyStream(trial, meter, family, weighted, morphs);
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "lacerta/attributed_mesh.h"
@@ -42,15 +43,15 @@ struct AttributeDistance {
   AttributeError Worst(size_t attribute) const;  // of the two directions, figure by figure
 };
 
-// Measures many surfaces against one original. The result depends on meshes and options alone, not on the number of threads.
+// Measures many surfaces against one original. The result depends on meshes and options alone, not on the number of threads. Copies share
+// what was prepared of the original.
 class AttributeDistanceMeter {
  public:
   // Copies the original. Fails with kInvalidData where CheckAttributedMesh does, where there is no area, or a coordinate is beyond 1e18.
   static StatusOr<AttributeDistanceMeter> Create(AttributedMesh original);
 
-  AttributeDistanceMeter(AttributeDistanceMeter&&) noexcept;
-  AttributeDistanceMeter& operator=(AttributeDistanceMeter&&) noexcept;
-  ~AttributeDistanceMeter();
+  // The same for surfaces whose attributes go by other names; names: one for each attribute of the original.
+  AttributeDistanceMeter WithNames(std::vector<std::string> names) const;
 
   // mesh: has the same attributes (name, kind, components) in the same order, else kInvalidArgument; kInvalidData as in Create and
   // where only one of the two surfaces has area in some group.
@@ -58,9 +59,10 @@ class AttributeDistanceMeter {
 
  private:
   struct Original;
-  explicit AttributeDistanceMeter(std::unique_ptr<const Original> original);
+  AttributeDistanceMeter(std::shared_ptr<const Original> original, std::vector<std::string> names);
 
-  std::unique_ptr<const Original> original_;
+  std::shared_ptr<const Original> original_;
+  std::vector<std::string> names_;  // of the attributes
 };
 
 }  // namespace lacerta

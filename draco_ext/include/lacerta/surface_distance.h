@@ -63,16 +63,12 @@ double DistanceOfPsnr(double psnr, double diagonal);
 //
 // Samples are a low-discrepancy sequence over the cumulated triangle areas in spatially coherent order; measuring runs
 // on all cores of the TBB arena it is called in. The result depends on the meshes and options alone, to the last bit,
-// not on the number of threads. Measure is const and may be called from several threads.
+// not on the number of threads. Measure is const and may be called from several threads. Copies share what was prepared.
 class SurfaceDistanceMeter {
  public:
   // Fails with kInvalidData when the original has no triangle, no area, an index out of range, a coordinate that is not
   // finite or beyond 1e18 in size, or a bounding box smaller than 1e-12. Degenerate triangles among others are fine.
   static StatusOr<SurfaceDistanceMeter> Create(const TriangleMesh& original);
-
-  SurfaceDistanceMeter(SurfaceDistanceMeter&&) noexcept;
-  SurfaceDistanceMeter& operator=(SurfaceDistanceMeter&&) noexcept;
-  ~SurfaceDistanceMeter();
 
   // Distance between the original and `mesh`. Fails as Create does, except for the size of the box, and with
   // kInvalidArgument on options out of range.
@@ -83,9 +79,9 @@ class SurfaceDistanceMeter {
 
  private:
   struct Surface;
-  explicit SurfaceDistanceMeter(std::unique_ptr<const Surface> original);
+  explicit SurfaceDistanceMeter(std::shared_ptr<const Surface> original);
 
-  std::unique_ptr<const Surface> original_;
+  std::shared_ptr<const Surface> original_;
 };
 
 // The same for a single pair.

@@ -192,6 +192,10 @@ TEST(AttributeDistanceTest, RefusesOtherAttributesAndBadOptions) {
   AttributedMesh other = mesh;
   other.attributes[0].name = "TEXCOORD_1";
   EXPECT_THAT(meter.value().Measure(other).status().message(), HasSubstr("TEXCOORD_0 of the original but TEXCOORD_1"));
+  const auto renamed = meter.value().WithNames({"TEXCOORD_1", "NORMAL"}).Measure(other);
+  ASSERT_TRUE(renamed.ok());
+  EXPECT_EQ(renamed.value().Worst(0).rms, meter.value().Measure(mesh).value().Worst(0).rms);
+  EXPECT_FALSE(meter.value().WithNames({"TEXCOORD_1", "NORMAL"}).Measure(mesh).ok());
   other.attributes.pop_back();
   EXPECT_FALSE(meter.value().Measure(other).ok());
   AttributeDistanceOptions options;
