@@ -14,7 +14,9 @@ namespace lacerta {
 
 struct InputProxyOptions {
   uint32_t fewest_triangles = 200'000;
-  double share = 0.15;  // of the distance that the stream may have, at most
+  // What more triangles would take away from its distance, over what noise that simplification smooths away (error_floor.h) leaves of the
+  // distance that the stream may have, at most.
+  double share = 0.15;
 };
 
 // The input, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them.
