@@ -14,8 +14,13 @@ namespace lacerta {
 
 struct AttributedProxyOptions {
   uint32_t fewest_triangles = 100'000;
-  double share = 0.15;            // of the distance allowed, at most
-  double attribute_share = 0.25;  // of every attribute's error and of the turned area allowed, at most
+  // Inputs of more than twice that are simplified to so many part by part first (simplify_in_parts.h), which keeps memory per triangle low, and
+  // anew as a whole only where that is not fine enough.
+  uint32_t most_at_once = 1'000'000;
+  // What more triangles would take away from an error, over what is left of the error allowed beside the noise that simplification smooths
+  // away (error_floor.h), at most:
+  double share = 0.15;            // of the distance
+  double attribute_share = 0.25;  // of every attribute's error and of the turned area
 };
 
 // The original, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them. One that cannot

@@ -130,6 +130,7 @@ bool AttributedSimplifier::IsCurve(uint32_t u, uint32_t v, const std::vector<uin
 bool AttributedSimplifier::MayCollapse(uint32_t u, uint32_t v) {
   if (valence_[u] + valence_[v] > kMaxRing) return false;
   if (freedom_[u] == VertexFreedom::kSurface && freedom_[v] == VertexFreedom::kSurface) return true;
+  if (freedom_[u] == VertexFreedom::kHeld || freedom_[v] == VertexFreedom::kHeld) return false;
   if (freedom_[u] == VertexFreedom::kFixed && freedom_[v] == VertexFreedom::kFixed) return false;
   rings_.Collect(u, dead_, &corners_u_);
   rings_.Collect(v, dead_, &corners_v_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "remesh/attribute_values.h"
 #include "remesh/attributed_simplifier.h"
@@ -28,8 +29,11 @@ size_t CountUpTo(const std::vector<Event>& events, size_t num_collapses) {
 
 }  // namespace
 
-AttributedSimplification::AttributedSimplification(const AttributedMesh& input, const std::vector<double>& weights)
-    : input_(input), start_(MakeWedgeMesh(input)), histories_(input.attributes.size()) {
+AttributedSimplification::AttributedSimplification(AttributedMesh input, const std::vector<double>& weights, const std::vector<uint8_t>& held)
+    : input_(std::move(input)), start_(MakeWedgeMesh(input_)), histories_(input_.attributes.size()) {
+  for (uint32_t v = 0; v < start_.num_vertices() && !held.empty(); ++v) {
+    if (held[start_.source_vertex[v]] != 0) start_.freedom[v] = VertexFreedom::kHeld;
+  }
   if (!start_.mesh.triangles.empty()) AttributedSimplifier(input_, start_, weights, this).Run();
 }
 

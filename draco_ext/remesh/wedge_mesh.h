@@ -17,6 +17,7 @@ enum class VertexFreedom : uint8_t {
   kCurve,     // two curve edges
   kJunction,  // where curves end or cross: stays one
   kFixed,     // where the surface was cut to be a manifold: all sides keep their points, as well the two that go on in each other
+  kHeld,      // stays with its values and triangles: other surfaces go on there
 };
 
 // The values of one attribute, as nodes: corners around a vertex that have the same value are one node.

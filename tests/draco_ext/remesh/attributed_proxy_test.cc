@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "shapes/attributed_shapes.h"
 
@@ -47,6 +49,24 @@ TEST_F(AttributedProxyTest, IsNotThereForSmallInputsAndFineTargets) {
   ASSERT_TRUE(proxy.has_value());
   EXPECT_LE(proxy->surface.triangles.size(), 500u);
   EXPECT_FALSE(ProxyFor(fine, options).has_value());
+}
+
+// Normals off by noise that no number of triangles follows, and that no coarser surface has: the distances tell how coarse it may be.
+TEST_F(AttributedProxyTest, IsThereBesideNoiseThatLeavesRoom) {
+  AttributedMesh noisy = mesh_;
+  std::vector<float>& normals = noisy.attributes[1].values;
+  for (size_t i = 0; i < normals.size(); ++i) normals[i] += 0.03f * std::sin(static_cast<float>(7919 * i));
+  const SurfaceErrorMeter meter = SurfaceErrorMeter::Create(noisy).value();
+  AttributedProxyOptions options;
+  options.fewest_triangles = 500;
+  const ErrorTargets targets{1e-3, {kAny, 2}};
+  const std::optional<AttributedMesh> proxy = AttributedProxy(noisy, meter, targets, options).value();
+  ASSERT_TRUE(proxy.has_value());
+  const double degrees = meter.Measure(*proxy, 100'000).value().attributes[1].rms_99;
+  EXPECT_LE(degrees, targets.attributes[1]);
+  EXPECT_GE(degrees, 1.5 * options.attribute_share * targets.attributes[1]);
+  EXPECT_LE(proxy->surface.triangles.size(), noisy.surface.triangles.size() / 2);
+  EXPECT_FALSE(AttributedProxy(noisy, meter, {1e-3, {kAny, degrees / 1.2}}, options).value().has_value());
 }
 
 TEST_F(AttributedProxyTest, SaysWhereNearlyAllTrianglesAreNeeded) {
