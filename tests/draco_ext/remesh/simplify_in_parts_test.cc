@@ -44,7 +44,7 @@ TEST_F(SimplifyInPartsTest, CutsCloseAgain) {
   EXPECT_EQ(wedges.num_vertices(), simplified.surface.positions.size());  // nothing was cut to be a manifold
 }
 
-TEST_F(SimplifyInPartsTest, IsNotMuchFartherThanOneRunOverAll) {  // though a tenth of its triangles are along cuts
+TEST_F(SimplifyInPartsTest, IsNotMuchFartherThanOneRunOverAll) {
   const SurfaceErrorMeter meter = SurfaceErrorMeter::Create(mesh_).value();
   const SurfaceErrors whole = meter.Measure(SimplifyInParts(mesh_, kWeights, 0.2, 20'000), 100'000).value();
   const SurfaceErrors parts = meter.Measure(SimplifyInParts(mesh_, kWeights, 0.2, 5000), 100'000).value();
