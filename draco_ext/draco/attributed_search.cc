@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "draco/rate_control.h"
+#include "remesh/agreeing_faces.h"
 #include "remesh/attributed_still.h"
 
 namespace lacerta {
@@ -151,16 +152,20 @@ size_t LeastBytesOfBase(size_t num_triangles, const AttributedMesh& mesh) { retu
 StatusOr<AttributedTrial> SmallestAttributedStream(const AttributedMesh& mesh, const SurfaceErrorMeter& meter, const ErrorTargets& targets,
                                                    const AttributedSearchOptions& options) {
   if (targets.attributes.size() != mesh.attributes.size()) return InvalidArgument("there is not one target for each attribute");
-  LACERTA_ASSIGN_OR_RETURN(AttributedParts parts, SplitAttributedSurface(mesh));
+  constexpr double kTurnedShare = 0.5;  // of the area that may look the other way: the rest is for levels
+  const std::optional<AgreeingSurface> agreeing = TurnToAgree(mesh);
+  const bool is_turned = agreeing && agreeing->turned_share <= kTurnedShare * targets.turned;
+  const AttributedMesh& input = is_turned ? agreeing->mesh : mesh;
+  LACERTA_ASSIGN_OR_RETURN(AttributedParts parts, SplitAttributedSurface(input));
   LACERTA_ASSIGN_OR_RETURN(const CollapseHistory history, DecimateAttributed(parts));
   const size_t coarsest = history.FacesAt(history.num_collapses()).size();
-  if (LeastBytesOfBase(coarsest, mesh) >= options.most_bytes) return Unsupported("its seams and creases leave no coarse base");
+  if (LeastBytesOfBase(coarsest, input) >= options.most_bytes) return Unsupported("its seams and creases leave no coarse base");
   LACERTA_RETURN_IF_ERROR(SimplifyStill(targets, meter.texture_size(), &parts));
-  if (LeastBytesOfBase(coarsest + parts.still.surface.triangles.size(), mesh) >= options.most_bytes) return Unsupported("most of it are small parts");
+  if (LeastBytesOfBase(coarsest + parts.still.surface.triangles.size(), input) >= options.most_bytes) return Unsupported("most of it are small parts");
   const InputSurface surface(parts.refined.surface, parts.topology);
-  const GroupSurface original(mesh);
-  const AttributedSurface input{original, meter, parts, surface, history, options.meaning};
-  return BaseWalk(input, targets, options).Smallest();
+  const GroupSurface original(input);
+  const AttributedSurface whole{original, meter, parts, surface, history, options.meaning};
+  return BaseWalk(whole, targets, options).Smallest();
 }
 
 }  // namespace lacerta
