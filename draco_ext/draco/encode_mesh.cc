@@ -16,6 +16,7 @@
 #include "draco/search_effort.h"
 #include "draco/still_part.h"
 #include "draco/subdivided_input.h"
+#include "draco/within_memory.h"
 #include "draco/zero_level_search.h"
 #include "geometry/bounding_box.h"
 #include "geometry/triangle_tree.h"
@@ -260,9 +261,7 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, ProxiedInput* inp
   return FromZeroLevel(stream, report, ReasonForSimpler(stream, target));
 }
 
-}  // namespace
-
-StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions& options) {
+StatusOr<EncodedMesh> Encode(const TriangleMesh& input, const EncodeOptions& options) {
   LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(input));
   const TriangleMesh& mesh = cleaned.mesh;
   LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget asked, ResolveTarget(options.target, mesh.positions.size()));
@@ -271,6 +270,7 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   }
   ResolvedTarget target = LessForm(asked, options.form);
   target.quality_layers = options.quality_layers;
+  const double crowding = TriangleTree(mesh).Crowding();  // before the meter: each takes more memory than the mesh
   // Against what came in: a triangle that is there twice counts twice for whoever measures the two files.
   LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(input));
   EncodeReport report;
@@ -279,7 +279,6 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   report.input_triangles = mesh.triangles.size();
   report.diagonal = meter.diagonal();
 
-  const double crowding = TriangleTree(mesh).Crowding();
   ProxiedInput proxied(mesh, meter, target);
   StatusOr<EncodedParts> encoded = EncodeSurface(mesh, &proxied, crowding, meter, target, options, report);
   if (!encoded.ok()) {  // without refinement, then, with the reason
@@ -293,6 +292,12 @@ StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& input, const EncodeOptions&
   if (!target.is_rate && made.levels.back().psnr < target.psnr) made.reason += ReasonInFloats(mesh, meter, target);
   if (options.progress) options.progress(1.0, "done");
   return InForm(options.form, std::move(encoded).value());
+}
+
+}  // namespace
+
+StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& mesh, const EncodeOptions& options) {
+  return WithinMemory([&] { return Encode(mesh, options); });
 }
 
 }  // namespace lacerta

@@ -1,28 +1,57 @@
 #include "draco/input_proxy.h"
 
+#include <algorithm>
+
 #include "draco/decoded_distance.h"
 #include "draco/rate_control.h"
 #include "remesh/error_floor.h"
 #include "remesh/simplify.h"
+#include "remesh/simplify_in_parts.h"
 
 namespace lacerta {
+namespace {
+
+// Looks for the proxy from the fewest triangles on.
+class ProxySearch {
+ public:
+  // allowed: the distance that the stream may have. What is referred to must outlive the search.
+  ProxySearch(const SurfaceDistanceMeter& meter, double allowed, const InputProxyOptions& options)
+      : meter_(meter), allowed_(allowed), share_(options.share), next_(options.fewest_triangles) {}
+
+  // The first near enough of those of at most `most` triangles, from where the last call ended.
+  std::optional<TriangleMesh> FirstNearEnough(const SimplificationSequence& sequence, size_t most) {
+    constexpr uint64_t kSamples = 50'000;
+    for (; next_ <= most; next_ *= 2) {
+      TriangleMesh proxy = sequence.MeshWith(static_cast<uint32_t>(next_));
+      const ErrorAtSize size{DecodedDistance(meter_, proxy, SurfaceDistanceOptions::RmsOnly(kSamples)), static_cast<double>(proxy.triangles.size())};
+      const bool is_near = IsNearItsFloor(coarser_ ? *coarser_ : size, size, allowed_, share_);
+      coarser_ = size;
+      if (is_near) return proxy;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const SurfaceDistanceMeter& meter_;
+  const double allowed_, share_;
+  uint64_t next_;  // size
+  std::optional<ErrorAtSize> coarser_;
+};
+
+}  // namespace
 
 std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                        const InputProxyOptions& options) {
-  constexpr uint64_t kSamples = 50'000;
   const size_t most_triangles = cleaned.triangles.size() / 2;
   if (options.fewest_triangles > most_triangles) return std::nullopt;
   const double psnr = TypicalPsnr(target, static_cast<double>(options.fewest_triangles) / 2);  // what bytes bring hardly depends on how dense the input is
-  const double allowed = DistanceOfPsnr(psnr, meter.diagonal());
-  const SimplificationSequence sequence(cleaned);
-  std::optional<ErrorAtSize> coarser;
-  for (uint64_t n = options.fewest_triangles; n <= most_triangles; n *= 2) {
-    TriangleMesh proxy = sequence.MeshWith(static_cast<uint32_t>(n));
-    const ErrorAtSize size{DecodedDistance(meter, proxy, SurfaceDistanceOptions::RmsOnly(kSamples)), static_cast<double>(proxy.triangles.size())};
-    if (IsNearItsFloor(coarser ? *coarser : size, size, allowed, options.share)) return proxy;
-    coarser = size;
+  ProxySearch search(meter, DistanceOfPsnr(psnr, meter.diagonal()), options);
+  if (options.most_at_once <= most_triangles) {
+    const TriangleMesh reduced = SimplifyInParts(cleaned, options.most_at_once, options.part_triangles);
+    std::optional<TriangleMesh> proxy = search.FirstNearEnough(SimplificationSequence(reduced), std::min(reduced.triangles.size(), most_triangles));
+    if (proxy) return proxy;
   }
-  return std::nullopt;
+  return search.FirstNearEnough(SimplificationSequence(cleaned), most_triangles);
 }
 
 }  // namespace lacerta

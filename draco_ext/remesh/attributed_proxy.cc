@@ -13,6 +13,8 @@
 namespace lacerta {
 namespace {
 
+constexpr uint64_t kSamples = 50'000;
+
 struct MeasuredSize {
   SurfaceErrors errors;
   double triangles = 0;
@@ -42,7 +44,6 @@ class ProxySearch {
   // The first near enough of those of at most `most` triangles, from where the last call ended; none of them: nothing. Fails where seams keep
   // more.
   StatusOr<std::optional<AttributedMesh>> FirstNearEnough(const AttributedSimplification& sequence, size_t most) {
-    constexpr uint64_t kSamples = 50'000;
     for (; next_ <= most; next_ *= 2) {
       AttributedMesh proxy = sequence.MeshWith(static_cast<uint32_t>(next_));
       const size_t size = proxy.surface.triangles.size();
@@ -68,6 +69,12 @@ class ProxySearch {
   std::optional<MeasuredSize> finest_;  // of those that were measured
 };
 
+// Whether what is made of the proxy has room left beside its errors.
+bool WillDo(const SurfaceErrors& errors, const ErrorTargets& targets) {
+  constexpr double kMostOfTargets = 0.9;
+  return WorstRatio(errors, targets) <= kMostOfTargets;
+}
+
 }  // namespace
 
 StatusOr<std::optional<AttributedMesh>> AttributedProxy(const AttributedMesh& original, const SurfaceErrorMeter& meter,
@@ -77,12 +84,13 @@ StatusOr<std::optional<AttributedMesh>> AttributedProxy(const AttributedMesh& or
   const std::vector<double> weights = WeightsOfTargets(original, meter, targets);
   ProxySearch search(meter, targets, options);
   if (options.most_at_once <= most_triangles) {
-    const double share = static_cast<double>(options.most_at_once) / static_cast<double>(all);
-    AttributedMesh reduced = SimplifyInParts(original, weights, share);
+    AttributedMesh reduced = SimplifyInParts(original, weights, options.most_at_once, options.part_triangles);
     const size_t size = reduced.surface.triangles.size();
-    StatusOr<std::optional<AttributedMesh>> proxy = search.FirstNearEnough(AttributedSimplification(std::move(reduced), weights), std::min(size, most_triangles));
+    StatusOr<std::optional<AttributedMesh>> proxy = search.FirstNearEnough(AttributedSimplification(reduced, weights), std::min(size, most_triangles));
     if (!proxy.ok() || proxy.value().has_value()) return proxy;
-    if (search.Wanted() >= static_cast<double>(all)) return Unsupported("it needs nearly all its triangles for the errors asked for");
+    const StatusOr<SurfaceErrors> errors = meter.Measure(reduced, kSamples);
+    if (size <= most_triangles && errors.ok() && WillDo(errors.value(), targets)) return std::optional<AttributedMesh>(std::move(reduced));
+    return Unsupported("it needs more than " + std::to_string(size) + " triangles for the errors asked for");
   }
   StatusOr<std::optional<AttributedMesh>> proxy = search.FirstNearEnough(AttributedSimplification(original, weights), most_triangles);
   if (!proxy.ok() || proxy.value().has_value()) return proxy;

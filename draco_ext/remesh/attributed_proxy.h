@@ -14,9 +14,10 @@ namespace lacerta {
 
 struct AttributedProxyOptions {
   uint32_t fewest_triangles = 100'000;
-  // Inputs of more than twice that are simplified to so many part by part first (simplify_in_parts.h), which keeps memory per triangle low, and
-  // anew as a whole only where that is not fine enough.
+  // Inputs of at least twice that are simplified to so many part by part first (simplify_in_parts.h), which keeps memory per triangle low, and
+  // never as a whole.
   uint32_t most_at_once = 1'000'000;
+  uint32_t part_triangles = 125'000;
   // What more triangles would take away from an error, over what is left of the error allowed beside the noise that simplification smooths
   // away (error_floor.h), at most:
   double share = 0.15;            // of the distance
@@ -25,7 +26,8 @@ struct AttributedProxyOptions {
 
 // The original, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them. One that cannot
 // be measured, as where a group has lost its area, does not count. Fails with kUnsupported, with the reason, where simplification is of no use at
-// all: seams keep more than half of the triangles, or errors at the largest size tried tell that nearly all are needed.
+// all: seams keep more than half of the triangles, errors at the largest size tried tell that nearly all are needed, or so many as
+// `most_at_once` leave no room beside the targets.
 //   original  one that CheckAttributedMesh accepts
 //   meter     of the original
 //   targets   of what it stands for; `everywhere` is left alone

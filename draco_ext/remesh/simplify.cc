@@ -42,7 +42,7 @@ constexpr float kPinchPenalty = 4;
 
 class Simplifier {
  public:
-  Simplifier(const TriangleMesh& mesh, SimplificationSequence* sequence);
+  Simplifier(const TriangleMesh& mesh, const std::vector<uint8_t>& held, SimplificationSequence* sequence);
   void Run();
 
  private:
@@ -53,6 +53,9 @@ class Simplifier {
   void PushAround(uint32_t v);
   std::vector<uint32_t> TrianglesOf(uint32_t v);
   Effect EffectOf(uint32_t u, uint32_t v, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v);
+  bool IsHeld(uint32_t v) const { return !held_.empty() && held_[v] != 0; }
+  bool IsNearHeld(const std::vector<uint32_t>& around) const;
+  bool LosesHeld(uint32_t u, uint32_t v, const std::vector<uint32_t>& around_u) const;
   void RemoveCoincident(uint32_t v);
   void Kill(uint32_t triangle);
   bool AnyTurnsOver(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around) const;
@@ -60,6 +63,7 @@ class Simplifier {
   uint32_t NextMark();
 
   SimplificationSequence* const sequence_;
+  const std::vector<uint8_t>& held_;
   Vec3d center_;
   double scale_ = 1;
   std::vector<Vec3d> positions_;  // centered and scaled to unit size: quadrics lose their digits far from the origin
@@ -76,8 +80,9 @@ class Simplifier {
   CollapseQueue<EdgeCandidate> queue_;
 };
 
-Simplifier::Simplifier(const TriangleMesh& mesh, SimplificationSequence* sequence)
+Simplifier::Simplifier(const TriangleMesh& mesh, const std::vector<uint8_t>& held, SimplificationSequence* sequence)
     : sequence_(sequence),
+      held_(held),
       triangles_(mesh.triangles),
       dead_(mesh.triangles.size(), 0),
       quadrics_(mesh.positions.size()),
@@ -147,12 +152,15 @@ void Simplifier::ClassifyEdges() {
 Placement Simplifier::Place(uint32_t u, uint32_t v) const {
   Quadric q = quadrics_[u];
   q += quadrics_[v];
-  Placement best = PlaceBetween(q, positions_[u], positions_[v]);
+  const bool is_free = !IsHeld(u) && !IsHeld(v);
+  const Vec3d& fixed = positions_[IsHeld(u) ? u : v];
+  Placement best = is_free ? PlaceBetween(q, positions_[u], positions_[v]) : Placement{q.Evaluate(fixed), fixed};
   best.cost += edge_weight_ * SquaredNorm(positions_[u] - positions_[v]);
   return best;
 }
 
 void Simplifier::Push(uint32_t u, uint32_t v) {
+  if (IsHeld(u) && IsHeld(v)) return;
   if (u > v) std::swap(u, v);
   queue_.Push({static_cast<float>(Place(u, v).cost), u, v, version_[u] + version_[v], false});
 }
@@ -217,6 +225,21 @@ Effect Simplifier::EffectOf(uint32_t u, uint32_t v, const std::vector<uint32_t>&
   return pinches ? Effect::kPinches : Effect::kKeepsTopology;
 }
 
+bool Simplifier::IsNearHeld(const std::vector<uint32_t>& around) const {
+  return !held_.empty() && std::any_of(around.begin(), around.end(), [&](uint32_t t) {
+    return std::any_of(triangles_[t].begin(), triangles_[t].end(), [&](uint32_t w) { return IsHeld(w); });
+  });
+}
+
+// Whether a vertex across the edge is held and has no triangle but those that the collapse takes away.
+bool Simplifier::LosesHeld(uint32_t u, uint32_t v, const std::vector<uint32_t>& around_u) const {
+  return !held_.empty() && std::any_of(around_u.begin(), around_u.end(), [&](uint32_t t) {
+    const Triangle& c = triangles_[t];
+    if (c[0] != v && c[1] != v && c[2] != v) return false;
+    return std::any_of(c.begin(), c.end(), [&](uint32_t w) { return w != u && w != v && IsHeld(w) && valence_[w] == 1; });
+  });
+}
+
 // Of triangles around v on the same three vertices one stays, whichever way they look.
 void Simplifier::RemoveCoincident(uint32_t v) {
   std::vector<std::array<uint32_t, 2>> seen;  // the two other vertices
@@ -269,7 +292,8 @@ void Simplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position
   ++version_[kept];
   ++version_[removed];
   if (pinched) RemoveCoincident(kept);
-  sequence_->collapses_.push_back({removed, kept, Vec3Cast<float>(position * scale_ + center_), num_alive_});
+  const Vec3f exact = IsHeld(kept) ? sequence_->positions_[kept] : Vec3Cast<float>(position * scale_ + center_);
+  sequence_->collapses_.push_back({removed, kept, exact, num_alive_});
   PushAround(kept);
 }
 
@@ -292,16 +316,23 @@ void Simplifier::Run() {
       queue_.Push({kPinchPenalty * edge.cost, edge.u, edge.v, edge.version, true});
       continue;
     }
-    if (effect == Effect::kForbidden || AnyTurnsOver(edge.u, edge.v, placement.position, around_u) || AnyTurnsOver(edge.v, edge.u, placement.position, around_v)) {
+    const bool pinches = effect == Effect::kPinches;
+    if (effect == Effect::kForbidden || AnyTurnsOver(edge.u, edge.v, placement.position, around_u) || AnyTurnsOver(edge.v, edge.u, placement.position, around_v) ||
+        LosesHeld(edge.u, edge.v, around_u) || (pinches && (IsNearHeld(around_u) || IsNearHeld(around_v)))) {
       queue_.Block(edge);
       continue;
     }
-    Collapse(edge.u, edge.v, placement.position, around_v, effect == Effect::kPinches);
+    if (IsHeld(edge.v)) {
+      Collapse(edge.v, edge.u, placement.position, around_u, pinches);
+    } else {
+      Collapse(edge.u, edge.v, placement.position, around_v, pinches);
+    }
   }
 }
 
-SimplificationSequence::SimplificationSequence(const TriangleMesh& mesh) : positions_(mesh.positions), triangles_(mesh.triangles) {
-  if (!mesh.triangles.empty()) Simplifier(mesh, this).Run();
+SimplificationSequence::SimplificationSequence(const TriangleMesh& mesh, const std::vector<uint8_t>& held)
+    : positions_(mesh.positions), triangles_(mesh.triangles) {
+  if (!mesh.triangles.empty()) Simplifier(mesh, held, this).Run();
 }
 
 uint32_t SimplificationSequence::fewest_triangles() const {

@@ -19,7 +19,9 @@ class SimplificationSequence {
   // A collapse moves the vertex that remains to where its quadric is least, and is made where it turns no triangle over. Handles,
   // holes and gaps close when they are about as small as the error; parts may then meet in one vertex or edge, and of
   // triangles that come to lie on each other one stays. Every component keeps a triangle. Deterministic; O(n log n).
-  explicit SimplificationSequence(const TriangleMesh& mesh);
+  //
+  // held: for each vertex 1 where it stays with its edges to others that are held, exactly; else 0. Empty: none.
+  explicit SimplificationSequence(const TriangleMesh& mesh, const std::vector<uint8_t>& held = {});
 
   uint32_t num_input_triangles() const { return static_cast<uint32_t>(triangles_.size()); }
   // Of the coarsest mesh: no collapse is possible any more.

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "geometry/bounding_box.h"
+#include "lacerta/clean.h"
 #include "remesh/attributed_simplify.h"
+#include "remesh/simplify.h"
 
 namespace lacerta {
 namespace {
@@ -99,22 +102,66 @@ MeshAttribute TakeAttribute(const MeshAttribute& attribute, const Faces& faces) 
   return part;
 }
 
-AttributedMesh SimplifyPart(const AttributedMesh& input, const std::vector<double>& weights, double share, const Faces& faces,
+// Some faces of a surface as one of its own; *held: its vertices that other parts have too.
+TriangleMesh TakeSurface(const TriangleMesh& surface, const Faces& faces, const std::vector<uint8_t>& is_shared, std::vector<uint8_t>* held) {
+  TriangleMesh part;
+  Rows vertices = TakeRows(surface.triangles, faces);
+  for (const uint32_t v : vertices.rows) {
+    part.positions.push_back(surface.positions[v]);
+    held->push_back(is_shared[v]);
+  }
+  part.triangles = std::move(vertices.triangles);
+  return part;
+}
+
+TriangleMesh SimplifyPart(const TriangleMesh& mesh, uint32_t num_triangles, const Faces& faces, const std::vector<uint8_t>& is_shared) {
+  std::vector<uint8_t> held;
+  const TriangleMesh part = TakeSurface(mesh, faces, is_shared, &held);
+  return SimplificationSequence(part, held).MeshWith(num_triangles);
+}
+
+AttributedMesh SimplifyPart(const AttributedMesh& input, const std::vector<double>& weights, uint32_t num_triangles, const Faces& faces,
                             const std::vector<uint8_t>& is_shared) {
   AttributedMesh part;
-  Rows vertices = TakeRows(input.surface.triangles, faces);
   std::vector<uint8_t> held;
-  for (const uint32_t v : vertices.rows) {
-    part.surface.positions.push_back(input.surface.positions[v]);
-    held.push_back(is_shared[v]);
-  }
-  part.surface.triangles = std::move(vertices.triangles);
+  part.surface = TakeSurface(input.surface, faces, is_shared, &held);
   for (const MeshAttribute& attribute : input.attributes) part.attributes.push_back(TakeAttribute(attribute, faces));
   if (!input.groups.empty()) {
     for (const uint32_t f : faces) part.groups.push_back(input.groups[f]);
   }
-  const AttributedSimplification sequence(std::move(part), weights, held);
-  return sequence.MeshWith(static_cast<uint32_t>(std::ceil(share * static_cast<double>(faces.size()))));
+  return AttributedSimplification(std::move(part), weights, held).MeshWith(num_triangles);
+}
+
+// All parts of a surface, each simplified to the share of its triangles that leaves `num_triangles` of all.
+//   simplify  (number of triangles, faces, what FindShared returned) -> Part
+template <typename Part, typename Simplify>
+std::vector<Part> SimplifyParts(const TriangleMesh& surface, uint32_t num_triangles, uint32_t part_triangles, const Simplify& simplify) {
+  Faces all_faces(surface.triangles.size());
+  std::iota(all_faces.begin(), all_faces.end(), 0u);
+  std::vector<Faces> parts;
+  CutIntoParts(surface, std::move(all_faces), std::max(part_triangles, 1u), &parts);
+  const std::vector<uint8_t> is_shared = FindShared(surface, parts);
+  const double share = static_cast<double>(num_triangles) / static_cast<double>(surface.triangles.size());
+  std::vector<Part> simplified(parts.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, parts.size(), 1), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t p = range.begin(); p != range.end(); ++p) {
+      const Faces faces = std::exchange(parts[p], {});
+      simplified[p] = simplify(static_cast<uint32_t>(std::ceil(share * static_cast<double>(faces.size()))), faces, is_shared);
+    }
+  });
+  return simplified;
+}
+
+// How many triangles are left after each round, `wanted` after the last. None takes away more than four fifths: what the cuts hold would be
+// too much of the rest, and gone after the next one, whose cuts are fewer.
+std::vector<uint32_t> SizesOfRounds(size_t all, uint32_t wanted) {
+  constexpr double kSmallestShare = 0.2;
+  const double share = static_cast<double>(std::max(wanted, 1u)) / static_cast<double>(std::max<size_t>(all, 1));
+  const int rounds = std::max(1, static_cast<int>(std::ceil(std::log(share) / std::log(kSmallestShare) - 1e-9)));
+  std::vector<uint32_t> sizes;
+  for (int i = 1; i < rounds; ++i) sizes.push_back(static_cast<uint32_t>(static_cast<double>(all) * std::pow(share, static_cast<double>(i) / rounds)));
+  sizes.push_back(wanted);
+  return sizes;
 }
 
 void Append(const std::vector<Triangle>& triangles, uint32_t first_row, std::vector<Triangle>* all) {
@@ -124,9 +171,13 @@ void Append(const std::vector<Triangle>& triangles, uint32_t first_row, std::vec
   }
 }
 
+void Append(const TriangleMesh& part, TriangleMesh* all) {
+  Append(part.triangles, static_cast<uint32_t>(all->positions.size()), &all->triangles);
+  all->positions.insert(all->positions.end(), part.positions.begin(), part.positions.end());
+}
+
 void Append(const AttributedMesh& part, AttributedMesh* all) {
-  Append(part.surface.triangles, static_cast<uint32_t>(all->surface.positions.size()), &all->surface.triangles);
-  all->surface.positions.insert(all->surface.positions.end(), part.surface.positions.begin(), part.surface.positions.end());
+  Append(part.surface, &all->surface);
   all->groups.insert(all->groups.end(), part.groups.begin(), part.groups.end());
   for (size_t a = 0; a < part.attributes.size(); ++a) {
     Append(part.attributes[a].corners, all->attributes[a].num_values(), &all->attributes[a].corners);
@@ -134,22 +185,42 @@ void Append(const AttributedMesh& part, AttributedMesh* all) {
   }
 }
 
+TriangleMesh OneRound(const TriangleMesh& mesh, uint32_t num_triangles, uint32_t part_triangles) {
+  std::vector<TriangleMesh> parts = SimplifyParts<TriangleMesh>(
+      mesh, num_triangles, part_triangles,
+      [&](uint32_t number, const Faces& faces, const std::vector<uint8_t>& is_shared) { return SimplifyPart(mesh, number, faces, is_shared); });
+  TriangleMesh joined;
+  for (TriangleMesh& part : parts) Append(std::exchange(part, {}), &joined);
+  StatusOr<CleanedMesh> cleaned = Clean(joined);
+  return cleaned.ok() ? std::move(cleaned).value().mesh : TriangleMesh();
+}
+
+AttributedMesh OneRound(const AttributedMesh& input, const std::vector<double>& weights, uint32_t num_triangles, uint32_t part_triangles) {
+  std::vector<AttributedMesh> parts = SimplifyParts<AttributedMesh>(
+      input.surface, num_triangles, part_triangles,
+      [&](uint32_t number, const Faces& faces, const std::vector<uint8_t>& is_shared) { return SimplifyPart(input, weights, number, faces, is_shared); });
+  AttributedMesh joined;
+  for (const MeshAttribute& attribute : input.attributes) joined.attributes.push_back({attribute.name, attribute.kind, attribute.components, {}, {}});
+  for (AttributedMesh& part : parts) Append(std::exchange(part, {}), &joined);
+  WeldExactly(&joined);
+  return joined;
+}
+
 }  // namespace
 
-AttributedMesh SimplifyInParts(const AttributedMesh& input, const std::vector<double>& weights, double share, uint32_t part_triangles) {
-  Faces all_faces(input.surface.triangles.size());
-  for (uint32_t f = 0; f < all_faces.size(); ++f) all_faces[f] = f;
-  std::vector<Faces> parts;
-  CutIntoParts(input.surface, std::move(all_faces), std::max(part_triangles, 1u), &parts);
-  const std::vector<uint8_t> is_shared = FindShared(input.surface, parts);
-  std::vector<AttributedMesh> simplified(parts.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, parts.size(), 1), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t p = range.begin(); p != range.end(); ++p) simplified[p] = SimplifyPart(input, weights, share, parts[p], is_shared);
-  });
+TriangleMesh SimplifyInParts(const TriangleMesh& mesh, uint32_t num_triangles, uint32_t part_triangles) {
+  TriangleMesh result;
+  for (const uint32_t size : SizesOfRounds(mesh.triangles.size(), num_triangles)) {
+    result = OneRound(result.triangles.empty() ? mesh : result, size, part_triangles);
+  }
+  return result;
+}
+
+AttributedMesh SimplifyInParts(const AttributedMesh& input, const std::vector<double>& weights, uint32_t num_triangles, uint32_t part_triangles) {
   AttributedMesh result;
-  for (const MeshAttribute& attribute : input.attributes) result.attributes.push_back({attribute.name, attribute.kind, attribute.components, {}, {}});
-  for (AttributedMesh& part : simplified) Append(std::exchange(part, {}), &result);
-  WeldExactly(&result);
+  for (const uint32_t size : SizesOfRounds(input.surface.triangles.size(), num_triangles)) {
+    result = OneRound(result.surface.triangles.empty() ? input : result, weights, size, part_triangles);
+  }
   return result;
 }
 

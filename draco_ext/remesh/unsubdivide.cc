@@ -178,10 +178,25 @@ bool IsSameMesh(const NumberedLevels& levels, const TriangleMesh& input) {
   return AsSet(std::move(triangles)) == AsSet(input.triangles);
 }
 
+// Whether vertices of six faces, or of three as on borders, are as many as midpoints would be: of every four faces one is a middle face, with three
+// midpoints that belong to two faces at most. Tells of most meshes that they are not subdivided without their topology, which takes
+// several times their memory.
+bool MayBeSubdivided(const TriangleMesh& mesh) {
+  std::vector<uint8_t> num_faces(mesh.positions.size(), 0);
+  for (const Triangle& t : mesh.triangles) {
+    for (const uint32_t v : t) {
+      if (v >= num_faces.size()) return false;
+      num_faces[v] = static_cast<uint8_t>(std::min(num_faces[v] + 1, 255));
+    }
+  }
+  const auto regular = std::count_if(num_faces.begin(), num_faces.end(), [](uint8_t count) { return count == 6 || count == 3; });
+  return static_cast<uint64_t>(regular) * 8 >= uint64_t{3} * mesh.triangles.size();
+}
+
 }  // namespace
 
 std::optional<Unsubdivided> UndoSubdivision(const TriangleMesh& mesh, int max_levels) {
-  if (mesh.triangles.empty() || mesh.triangles.size() % 4 != 0) return std::nullopt;
+  if (mesh.triangles.empty() || mesh.triangles.size() % 4 != 0 || !MayBeSubdivided(mesh)) return std::nullopt;
   StatusOr<Topology> finest = BuildTopology(static_cast<uint32_t>(mesh.positions.size()), mesh.triangles);
   if (!finest.ok()) return std::nullopt;
   const std::vector<uint16_t>& valence = finest.value().valence;

@@ -5,6 +5,7 @@
 #include "document/buffer_edit.h"
 #include "document/draco_encode.h"
 #include "document/gltf_document.h"
+#include "draco/within_memory.h"
 #include "extension/progressive.h"
 #include "lacerta/gltf.h"
 #include "pack/accessor_pool.h"
@@ -230,20 +231,24 @@ StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& opti
 }  // namespace
 
 StatusOr<PackResult> PackGltf(Span<const uint8_t> asset, const PackOptions& options) {
-  LACERTA_ASSIGN_OR_RETURN(GltfDocument document, ParseGltf(asset, options.folder));
-  return PackDocument(std::move(document), options);
+  return WithinMemory([&]() -> StatusOr<PackResult> {
+    LACERTA_ASSIGN_OR_RETURN(GltfDocument document, ParseGltf(asset, options.folder));
+    return PackDocument(std::move(document), options);
+  });
 }
 
 StatusOr<PackResult> PackMesh(const TriangleMesh& mesh, const std::string& name, const PackOptions& options) {
   if (mesh.triangles.empty()) return InvalidData("the mesh has no triangles");
-  return PackDocument(SingleMeshDocument(mesh, name), options);
+  return WithinMemory([&] { return PackDocument(SingleMeshDocument(mesh, name), options); });
 }
 
 StatusOr<PackResult> PackMesh(const FileMesh& mesh, const std::string& name, const PackOptions& options) {
   if (mesh.mesh.surface.triangles.empty()) return InvalidData("the mesh has no triangles");
-  LACERTA_ASSIGN_OR_RETURN(PackResult result, PackDocument(SingleMeshDocument(mesh, name), options));
-  result.report.notes.insert(result.report.notes.begin(), mesh.notes.begin(), mesh.notes.end());
-  return result;
+  return WithinMemory([&]() -> StatusOr<PackResult> {
+    LACERTA_ASSIGN_OR_RETURN(PackResult result, PackDocument(SingleMeshDocument(mesh, name), options));
+    result.report.notes.insert(result.report.notes.begin(), mesh.notes.begin(), mesh.notes.end());
+    return result;
+  });
 }
 
 }  // namespace lacerta

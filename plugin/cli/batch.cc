@@ -7,6 +7,7 @@
 #include <exception>
 #include <filesystem>
 #include <mutex>
+#include <new>
 #include <set>
 #include <thread>
 #include <utility>
@@ -103,7 +104,11 @@ bool IsUpToDate(const BatchItem& item) {
 FileOutcome Convert(const BatchItem& item, const std::function<FileOutcome(const BatchItem&)>& convert) {
   try {
     return convert(item);
-  } catch (const std::exception& error) {  // out of memory, most likely: the next file may be smaller
+  } catch (const std::bad_alloc&) {  // the next file may be smaller
+    FileOutcome outcome;
+    outcome.status = LimitExceeded(item.input + ": not enough memory");
+    return outcome;
+  } catch (const std::exception& error) {
     FileOutcome outcome;
     outcome.status = InternalError(item.input + ": " + error.what());
     return outcome;

@@ -1,4 +1,5 @@
 #include <exception>
+#include <new>
 
 #include "commands.h"
 #include "exit_code.h"
@@ -20,7 +21,9 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
-  } catch (const std::exception& error) {  // out of memory, most likely
+  } catch (const std::bad_alloc&) {
+    return Finish(lacerta::LimitExceeded("not enough memory"));
+  } catch (const std::exception& error) {
     return Finish(lacerta::InternalError(error.what()));
   }
   return exit_code;

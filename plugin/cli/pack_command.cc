@@ -150,7 +150,7 @@ StatusOr<FileOutcome> PackStream(const PackArguments& arguments, const EncodeOpt
 }
 
 StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& options, uint64_t* input_bytes) {
-  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadInput(arguments.input));
+  LACERTA_ASSIGN_OR_RETURN(Bytes bytes, ReadInput(arguments.input));
   *input_bytes = bytes.size();
   const bool is_json = arguments.input == "-" && !bytes.empty() && bytes[0] == '{';
   StatusOr<MeshFormat> format = MeshFormat::kGltf;
@@ -159,6 +159,7 @@ StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& 
   if (format.value() == MeshFormat::kGltf) return PackGltf(bytes, options);
   const std::string name = std::filesystem::path(arguments.input).stem().string();
   LACERTA_ASSIGN_OR_RETURN(FileMesh mesh, ParseFileMesh(bytes, format.value(), options.folder));
+  bytes = Bytes();  // large meshes fill the memory
   if (arguments.shape_only) mesh = ShapeOf(std::move(mesh));
   return PackMesh(mesh, name, options);
 }

@@ -9,12 +9,14 @@
 namespace {
 
 // Operators new and delete have no other place to count in.
-std::atomic<size_t> in_use{0}, peak{0};
+std::atomic<size_t> in_use{0}, peak{0}, limit{0};
+constexpr size_t kAlwaysGranted = 4096;  // to those who report the failure, too
 
 }  // namespace
 
 // In a file of their own, lest the compiler inline them and take malloc and delete for a mismatch.
 void* operator new(size_t size) {
+  if (limit != 0 && size >= kAlwaysGranted && in_use + size > limit) throw std::bad_alloc();
   void* p = std::malloc(size);
   if (p == nullptr) throw std::bad_alloc();
   const size_t now = in_use += malloc_usable_size(p);
@@ -34,5 +36,6 @@ namespace lacerta {
 size_t HeapInUse() { return in_use; }
 size_t HeapPeak() { return peak; }
 void ResetHeapPeak() { peak = in_use.load(); }
+void SetHeapLimit(size_t bytes) { limit = bytes; }
 
 }  // namespace lacerta

@@ -115,7 +115,7 @@ struct EncodedMesh {
 };
 
 // Encodes a triangle mesh. Fails with kInvalidData on positions that are not finite, indices out of range, or no triangle
-// left after cleaning; with kInvalidArgument on a target that makes no sense.
+// left after cleaning; with kInvalidArgument on a target that makes no sense; with kLimitExceeded where memory runs out.
 StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& mesh, const EncodeOptions& options);
 
 struct DecodedMesh {

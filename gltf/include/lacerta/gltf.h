@@ -108,7 +108,7 @@ struct PackResult {
 // it was, each with its reason in the report. All else in the asset passes through: nodes, materials, images byte for
 // byte, animations, skins, extras, unknown extensions. Fails with kInvalidData, naming mesh, primitive, accessor and
 // index; kUnsupported for compressions and versions that it does not know; kInvalidArgument for options that do not go
-// together.
+// together; kLimitExceeded where memory runs out.
 StatusOr<PackResult> PackGltf(Span<const uint8_t> asset, const PackOptions& options);
 
 // Packs one mesh as an asset of its own. `name` may be empty. Fails like EncodeMesh.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "shapes/attributed_shapes.h"
@@ -74,6 +75,25 @@ TEST_F(AttributedProxyTest, SaysWhereNearlyAllTrianglesAreNeeded) {
   options.fewest_triangles = 500;
   EXPECT_TRUE(AttributedProxy(mesh_, meter_, {1e-3, {0.01, kAny}}, options).ok());
   EXPECT_EQ(AttributedProxy(mesh_, meter_, {1e-3, {1e-4, kAny}}, options).status().code(), StatusCode::kUnsupported);
+}
+
+TEST_F(AttributedProxyTest, IsMadeOfPartsWhereThereAreTooManyForOneRun) {
+  AttributedProxyOptions options;
+  options.fewest_triangles = 500;
+  options.most_at_once = 5000;
+  options.part_triangles = 5000;
+  for (const double texels : {0.5, 0.05}) {
+    const ErrorTargets targets{kAny, {texels, kAny}};
+    const std::optional<AttributedMesh> proxy = ProxyFor(targets, options);
+    ASSERT_TRUE(proxy.has_value()) << texels;
+    const double error = meter_.Measure(*proxy, 100'000).value().attributes[0].rms_99;
+    EXPECT_LE(error, 0.95 * texels);
+    EXPECT_GE(error, 0.05 * texels);
+    EXPECT_LE(proxy->surface.triangles.size(), 5200u);
+  }
+  const StatusOr<std::optional<AttributedMesh>> fine = AttributedProxy(mesh_, meter_, {kAny, {0.01, kAny}}, options);
+  ASSERT_EQ(fine.status().code(), StatusCode::kUnsupported);
+  EXPECT_NE(fine.status().message().find("it needs more than "), std::string::npos) << fine.status().message();
 }
 
 TEST(AttributedProxy, IsNotThereWhereSeamsLeaveMoreThanHalf) {

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include "common/subdivision.h"
 #include "lacerta/surface_distance.h"
@@ -129,6 +133,43 @@ TEST(SimplifyTest, EveryComponentKeepsATriangle) {
   for (const Triangle& t : fewest.triangles) has_triangle[static_cast<size_t>(fewest.positions[t[0]].x / 3 + 0.5f)] = true;
   EXPECT_EQ(std::accumulate(has_triangle.begin(), has_triangle.end(), uint32_t{0}), kCount);
   EXPECT_LE(fewest.triangles.size(), 4 * kCount);
+}
+
+// Vertices near a plane across the sphere, as where parts meet: they and their edges are there at every size, to the last bit.
+TEST(SimplifyTest, HeldVerticesStay) {
+  const TriangleMesh mesh = shapes::BumpySphere(4);
+  std::vector<uint8_t> held(mesh.positions.size());
+  for (size_t v = 0; v < held.size(); ++v) held[v] = std::fabs(mesh.positions[v].x) < 0.05f;
+  const auto held_edges = [](const TriangleMesh& m, const auto& is_held) {
+    std::set<std::pair<std::array<float, 3>, std::array<float, 3>>> edges;
+    for (const Triangle& t : m.triangles) {
+      for (int k = 0; k < 3; ++k) {
+        const Vec3f &a = m.positions[t[k]], &b = m.positions[t[(k + 1) % 3]];
+        if (is_held(a) && is_held(b)) edges.insert({{a.x, a.y, a.z}, {b.x, b.y, b.z}});
+      }
+    }
+    return edges;
+  };
+  std::set<std::array<float, 3>> held_positions;
+  for (size_t v = 0; v < held.size(); ++v) {
+    const Vec3f& p = mesh.positions[v];
+    if (held[v] != 0) held_positions.insert({p.x, p.y, p.z});
+  }
+  const auto is_held = [&](const Vec3f& p) { return held_positions.count({p.x, p.y, p.z}) == 1; };
+  ASSERT_GT(held_positions.size(), 100u);
+  const SimplificationSequence sequence(mesh, held);
+  EXPECT_LT(sequence.fewest_triangles(), mesh.triangles.size() / 4);
+  for (const uint32_t wanted : {4000u, 2000u, 0u}) {
+    const TriangleMesh simplified = sequence.MeshWith(wanted);
+    ExpectSound(simplified);
+    std::set<std::array<float, 3>> there;
+    for (const Vec3f& p : simplified.positions) {
+      if (is_held(p)) there.insert({p.x, p.y, p.z});
+    }
+    EXPECT_EQ(there.size(), held_positions.size());
+    const auto before = held_edges(mesh, is_held), after = held_edges(simplified, is_held);
+    EXPECT_TRUE(std::includes(after.begin(), after.end(), before.begin(), before.end()));
+  }
 }
 
 TEST(SimplifyTest, DependsNeitherOnPlaceNorOnSize) {
