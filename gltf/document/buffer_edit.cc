@@ -55,8 +55,8 @@ void AddBounds(const AccessorData& data, Json* accessor) {
   Json min = Json::array();
   Json max = Json::array();
   for (const ComponentRange& range : ComponentRanges(data)) {
-    min.push_back(range.low);
-    max.push_back(range.high);
+    min.push_back(ShortNumber(range.low));
+    max.push_back(ShortNumber(range.high));
   }
   (*accessor)["min"] = std::move(min);
   (*accessor)["max"] = std::move(max);
@@ -136,10 +136,21 @@ uint64_t AddBuffer(Bytes bytes, GltfDocument* document) {
   return buffers.size() - 1;
 }
 
+void PlaceView(uint64_t offset, Json* view) {
+  if (offset != 0) {
+    (*view)["byteOffset"] = offset;
+  } else {
+    view->erase("byteOffset");
+  }
+}
+
 uint64_t AddBufferView(uint64_t buffer, uint64_t offset, uint64_t length, GltfDocument* document) {
   Json& views = document->json["bufferViews"];
   if (!views.is_array()) views = Json::array();
-  views.push_back({{"buffer", buffer}, {"byteOffset", offset}, {"byteLength", length}});
+  Json view = {{"buffer", buffer}};
+  PlaceView(offset, &view);
+  view["byteLength"] = length;
+  views.push_back(std::move(view));
   return views.size() - 1;
 }
 
@@ -308,7 +319,7 @@ Status MergeBuffers(GltfDocument* document) {
       if (place.first == interval.buffer && place.second < interval.end) moved = interval.moved_to + (place.second - interval.begin);
     }
     view["buffer"] = 0;
-    view["byteOffset"] = moved;
+    PlaceView(moved, &view);
   }
   document->buffers.clear();
   document->json.erase("buffers");

@@ -15,6 +15,9 @@ namespace lacerta {
 // Appends a buffer of its own that holds `bytes`; returns its index.
 uint64_t AddBuffer(Bytes bytes, GltfDocument* document);
 
+// Lets a view begin at `offset`; 0 goes without saying.
+void PlaceView(uint64_t offset, Json* view);
+
 // Appends a view of a part of a buffer; returns its index.
 uint64_t AddBufferView(uint64_t buffer, uint64_t offset, uint64_t length, GltfDocument* document);
 

@@ -1,5 +1,7 @@
 #include "document/json.h"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 
 namespace lacerta {
@@ -7,6 +9,17 @@ namespace {
 
 // Serializing is recursive, so the depth of what is read has to be bounded.
 constexpr int kMaxDepth = 256;
+
+// The double nearest to the decimals of a number: as few as tell it, or `precision` behind the first one.
+template <typename Number, typename... Precision>
+double ThroughDecimals(Number value, Precision... precision) {
+  std::array<char, 32> decimals;  // -1.17549435e-38 is as long as it gets
+  double number = value;
+  const auto written = std::to_chars(decimals.data(), decimals.data() + decimals.size(), value,
+                                     std::chars_format::scientific, precision...);
+  if (written.ec == std::errc()) std::from_chars(decimals.data(), written.ptr, number);
+  return number;
+}
 
 }  // namespace
 
@@ -70,6 +83,17 @@ bool IsTrue(const Json* value) { return value != nullptr && value->is_boolean() 
 
 std::string AsString(const Json* value) {
   return value != nullptr && value->is_string() ? value->get<std::string>() : std::string();
+}
+
+Json ShortNumber(float value) {
+  constexpr float kExact = 1 << 24;
+  if (std::fabs(value) < kExact && value == std::trunc(value)) return static_cast<int32_t>(value);
+  return ThroughDecimals(value);
+}
+
+Json RoundedNumber(double value) {
+  constexpr int kDigits = 4;
+  return ThroughDecimals(value, kDigits - 1);
 }
 
 }  // namespace lacerta

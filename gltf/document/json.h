@@ -40,6 +40,11 @@ bool IsTrue(const Json* value);
 // The string, or "" when it is none.
 std::string AsString(const Json* value);
 
+// A number that is written with the fewest digits that a reader in single precision takes for `value`, which is finite.
+Json ShortNumber(float value);
+// The same of a measure, which four digits tell well enough.
+Json RoundedNumber(double value);
+
 }  // namespace lacerta
 
 #endif  // LACERTA_DOCUMENT_JSON_H_

@@ -111,7 +111,8 @@ Status CheckSegments(const Progressive& progressive) {
       return InvalidData("segments.byteLength overflows");
     sum += segment.length;
     const bool is_base = counts[static_cast<size_t>(segment.stream)]++ == 0;
-    if (is_base && !progressive.streams[static_cast<size_t>(segment.stream)].base_lengths.empty() && !adds_up(segment)) {
+    if (is_base && !progressive.streams[static_cast<size_t>(segment.stream)].base_lengths.empty() &&
+        !adds_up(segment)) {
       return InvalidData("stream " + std::to_string(segment.stream) + ": \"baseLengths\" do not add up to its base");
     }
   }
@@ -180,6 +181,8 @@ StatusOr<Transmitted> FindTransmitted(const GltfDocument& document, const Progre
   return transmitted;
 }
 
+Json ShortNumbers(const Vec3f& v) { return {ShortNumber(v.x), ShortNumber(v.y), ShortNumber(v.z)}; }
+
 }  // namespace
 
 StatusOr<Progressive> ParseProgressive(const GltfDocument& document) {
@@ -200,12 +203,12 @@ Json FormatProgressive(const Progressive& progressive) {
   Json streams = Json::array();
   for (const ProgressiveStream& stream : progressive.streams) {
     Json errors = Json::array();
-    for (const double error : stream.errors) errors.push_back(static_cast<float>(error));
+    for (const double error : stream.errors) errors.push_back(RoundedNumber(error));
     Json json = {{"vertexCounts", stream.vertex_counts},
                  {"triangleCounts", stream.triangle_counts},
                  {"errors", std::move(errors)},
-                 {"min", {stream.min.x, stream.min.y, stream.min.z}},
-                 {"max", {stream.max.x, stream.max.y, stream.max.z}}};
+                 {"min", ShortNumbers(stream.min)},
+                 {"max", ShortNumbers(stream.max)}};
     if (stream.smooth_normals) json["normals"] = "smooth";
     if (!stream.base_lengths.empty()) json["baseLengths"] = stream.base_lengths;
     if (!stream.attributes.empty()) json["attributes"] = stream.attributes;
@@ -240,10 +243,10 @@ Status ReplaceTransmittedBytes(Bytes data, Progressive* progressive, GltfDocumen
     if (AsIndex(Find(view, "buffer")) != old_buffer || offset < old_begin || end > old_end || &view == &old) continue;
     if (end - old_begin > length) return InvalidData("a bufferView shows a part of the refinements");
     view["buffer"] = buffer;
-    view["byteOffset"] = offset - old_begin;
+    PlaceView(offset - old_begin, &view);
   }
   old["buffer"] = buffer;
-  old["byteOffset"] = 0;
+  PlaceView(0, &old);
   old["byteLength"] = length;
   std::set<uint64_t> unused;
   if (progressive->refinements.has_value()) unused.insert(*progressive->refinements);
@@ -282,7 +285,9 @@ struct Run {
   uint64_t stream = 0;
   size_t begin = 0, end = 0;
   double gain = -std::numeric_limits<double>::infinity();  // per byte
-  bool operator<(const Run& b) const { return gain != b.gain ? gain < b.gain : stream > b.stream; }  // the first of equal ones is the largest
+  bool operator<(const Run& b) const {
+    return gain != b.gain ? gain < b.gain : stream > b.stream;
+  }  // the first of equal ones is the largest
 };
 
 Run BestRun(uint64_t stream, size_t begin, const std::vector<uint64_t>& lengths, const std::vector<double>& errors) {
