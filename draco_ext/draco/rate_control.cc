@@ -77,7 +77,9 @@ class Ladder {
       }
       const bool is_enough = next.empty() || (rungs_.size() >= effort_.enough_sizes && is_scored);
       const double least_share = is_enough ? kLeastShareAtEnd : kLeastShare;
-      if (is_outdone(is_scored ? least_share * std::exp(rungs_[best].score) : LeastBytesFrom(highest + 1))) return outdone;
+      // Where no base reaches the target any stream without levels that does outdoes them all.
+      const double without_score = is_enough ? std::numeric_limits<double>::infinity() : LeastBytesFrom(highest + 1);
+      if (is_outdone(is_scored ? least_share * std::exp(rungs_[best].score) : without_score)) return outdone;
       if (is_enough) {
         std::vector<int> result;
         for (const int r : ranking) {

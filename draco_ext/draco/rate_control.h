@@ -44,7 +44,7 @@ bool IsBetter(const Outcome& a, const Outcome& b, const ResolvedTarget& target);
 // Codes the surface at the target: fewest bytes at a PSNR, highest PSNR at a number of bytes. Where no base size reaches the
 // target the nearest stream is returned, and says so.
 // progress: as in EncodeOptions, may be empty. is_outdone: may be empty; asked at a PSNR, as more becomes known, with the bytes that the stream
-// will take at least; once it says yes, kUnsupported is returned.
+// will take at least, infinity where none reaches the target; once it says yes, kUnsupported is returned.
 StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
                                     const std::function<void(double, const char*)>& progress, const SearchEffort& effort = SearchEffort(),
                                     const std::function<bool(double)>& is_outdone = {});

@@ -165,6 +165,18 @@ TEST(CodeAtTargetTest, GivesUpWhereItIsOutdone) {
   EXPECT_TRUE(asked_at_a_rate.empty());
 }
 
+TEST(CodeAtTargetTest, AnyStreamOutdoesBasesThatMissTheTarget) {
+  const Coder coder(shapes::CreasedBox(8));  // creases that a smooth remesh rounds
+  double most = 0;
+  const StatusOr<ChosenStream> chosen = CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, {false, 0, 120}, EncodeMode::kDefault, {},
+                                                     EffortOf(Effort::kFast), [&](double least) {
+                                                       most = least;
+                                                       return least > 1e9;
+                                                     });
+  EXPECT_EQ(chosen.status().code(), StatusCode::kUnsupported);
+  EXPECT_EQ(most, std::numeric_limits<double>::infinity());
+}
+
 TEST(CodeAtTargetTest, BeyondTheRemeshTheNearestIsReturned) {
   const Coder coder(shapes::CreasedBox(8));  // creases that a smooth remesh rounds
   const ChosenStream chosen = coder.Code({false, 0, 120});
