@@ -264,7 +264,7 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, ProxiedInput* inp
 StatusOr<EncodedMesh> Encode(const TriangleMesh& input, const EncodeOptions& options) {
   LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(input));
   const TriangleMesh& mesh = cleaned.mesh;
-  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget asked, ResolveTarget(options.target, mesh.positions.size()));
+  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget asked, ResolveTarget(options.target, mesh.positions.size(), BoundingBoxDiagonal(input)));
   if (options.quality_layers < 1 || options.quality_layers > kMostQualityLayers) {
     return InvalidArgument(std::to_string(options.quality_layers) + " quality layers; 1 to " + std::to_string(kMostQualityLayers) + " are possible");
   }

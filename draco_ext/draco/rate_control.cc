@@ -1,7 +1,9 @@
 #include "draco/rate_control.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <map>
@@ -228,12 +230,17 @@ double TypicalPsnr(const ResolvedTarget& target, double num_input_vertices) {
   return 62 + 6 * std::log2(1 + 4 * bits_per_vertex);
 }
 
-StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_input_vertices) {
+StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_input_vertices, double diagonal) {
+  const auto shown = [](double value) {
+    std::array<char, 32> text;
+    std::snprintf(text.data(), text.size(), "%g", value);
+    return std::string(text.data());
+  };
   const auto check = [&](double low, double high, const char* what) {
     if (target.value >= low && target.value <= high) return Status();
-    return InvalidArgument("target of " + std::to_string(target.value) + " " + what + " is not between " +
-                           std::to_string(low) + " and " + std::to_string(high));
+    return InvalidArgument("target of " + shown(target.value) + " " + what + " is not between " + shown(low) + " and " + shown(high));
   };
+  constexpr double kLeastError = 1e-7, kLargestError = 0.1;  // shares of the diagonal
   switch (target.kind) {
     case EncodeTarget::Kind::kBytes:
       LACERTA_RETURN_IF_ERROR(check(100, 1e12, "bytes"));
@@ -245,8 +252,11 @@ StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_
       LACERTA_RETURN_IF_ERROR(check(20, 140, "dB"));
       return ResolvedTarget{false, 0, target.value, BaseCoding::kStock};
     case EncodeTarget::Kind::kError:
-      LACERTA_RETURN_IF_ERROR(check(1e-7, 0.1, "of the diagonal"));
+      LACERTA_RETURN_IF_ERROR(check(kLeastError, kLargestError, "of the diagonal"));
       return ResolvedTarget{false, 0, -20 * std::log10(target.value), BaseCoding::kStock};
+    case EncodeTarget::Kind::kDistance:
+      LACERTA_RETURN_IF_ERROR(check(kLeastError * diagonal, kLargestError * diagonal, "units of a mesh of this size"));
+      return ResolvedTarget{false, 0, Psnr(target.value, diagonal), BaseCoding::kStock};
   }
   return InvalidArgument("unknown kind of target");
 }

@@ -12,8 +12,8 @@
 
 namespace lacerta {
 
-// Fails with kInvalidArgument where the value is not finite or out of a range that makes sense.
-StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_input_vertices);
+// Fails with kInvalidArgument where the value is not finite or out of a range that makes sense. diagonal: of the input, > 0.
+StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_input_vertices, double diagonal);
 
 // The PSNR that is asked for, or where a stream of the rate that is asked for usually ends up, dB.
 double TypicalPsnr(const ResolvedTarget& target, double num_input_vertices);

@@ -28,6 +28,7 @@ double TargetPsnr(const EncodeTarget& target) {
       return -20.0 * std::log10(target.value);
     case EncodeTarget::Kind::kBytes:
     case EncodeTarget::Kind::kBitsPerVertex:
+    case EncodeTarget::Kind::kDistance:  // a share of the scene by now
       break;
   }
   return kDefaultPsnr;

@@ -44,6 +44,13 @@ StatusOr<std::vector<PrimitivePlan>> PlanAlike(const PackedScene& scene, PackOpt
   return InOrder(scene, std::move(families));
 }
 
+// A distance in units of the world as a share of the scene's diagonal; other targets as they are.
+StatusOr<EncodeTarget> AsShare(const EncodeTarget& target, double scene_diagonal) {
+  if (target.kind != EncodeTarget::Kind::kDistance) return target;
+  if (!(scene_diagonal > 0.0)) return InvalidArgument("a distance in units of the scene is asked for, but it shows no triangles");
+  return EncodeTarget{EncodeTarget::Kind::kError, target.value / scene_diagonal};
+}
+
 // A budget means the whole file where more than one stream has to share it; a stream alone meets its own to 2 %.
 bool IsSharedBudget(const PackedScene& scene, const PackOptions& options) {
   if (options.encode.target.kind != EncodeTarget::Kind::kBytes) return false;
@@ -177,7 +184,10 @@ StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const PackedScene& scene, cons
 
 StatusOr<std::vector<PrimitivePlan>> PlanPrimitives(const GltfDocument& document, const PackOptions& options) {
   LACERTA_ASSIGN_OR_RETURN(const PackedScene scene, ReadPackedScene(document));
-  return IsSharedBudget(scene, options) ? PlanForBytes(scene, options) : PlanAlike(scene, options);
+  if (IsSharedBudget(scene, options)) return PlanForBytes(scene, options);
+  PackOptions resolved = options;
+  LACERTA_ASSIGN_OR_RETURN(resolved.encode.target, AsShare(options.encode.target, scene.families.scene_diagonal));
+  return PlanAlike(scene, std::move(resolved));
 }
 
 }  // namespace lacerta

@@ -27,6 +27,7 @@ struct PackArguments {
   double bits_per_vertex = 0.0;
   double psnr = 0.0;
   double error = 0.0;
+  double distance = 0.0;
   AttributeTargets attributes;
   std::string fallback = "draco";  // one of the names that AddPackCommand lists, like the next four
   std::string form = "draco";
@@ -45,6 +46,7 @@ EncodeTarget Target(const PackArguments& arguments) {
   if (arguments.bytes > 0.0) return {EncodeTarget::Kind::kBytes, arguments.bytes};
   if (arguments.bits_per_vertex > 0.0) return {EncodeTarget::Kind::kBitsPerVertex, arguments.bits_per_vertex};
   if (arguments.error > 0.0) return {EncodeTarget::Kind::kError, arguments.error};
+  if (arguments.distance > 0.0) return {EncodeTarget::Kind::kDistance, arguments.distance};
   if (arguments.psnr > 0.0) return {EncodeTarget::Kind::kPsnr, arguments.psnr};
   return EncodeTarget();
 }
@@ -62,6 +64,8 @@ bool MissesTarget(const EncodeTarget& target, const EncodeReport& report) {
       return finest.psnr < target.value;
     case EncodeTarget::Kind::kError:
       return finest.error > target.value * report.diagonal;
+    case EncodeTarget::Kind::kDistance:
+      return finest.error > target.value;
   }
   return false;
 }
@@ -272,6 +276,8 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   target->add_option("--psnr", arguments->psnr, "At least this PSNR in dB, 20 log10(diagonal / error)")
       ->check(CLI::PositiveNumber);
   target->add_option("--error", arguments->error, "At most this surface error, as a share of the diagonal")
+      ->check(CLI::PositiveNumber);
+  target->add_option("--distance", arguments->distance, "At most this surface error, in units of the mesh; of an asset, of its scene")
       ->check(CLI::PositiveNumber);
   target->require_option(0, 1);
   pack->add_option("--uv-error", arguments->attributes.uv_texels,

@@ -25,6 +25,7 @@ struct EncodeTarget {
     kBitsPerVertex,  // the same in bits per vertex of the cleaned input (b/iv)
     kPsnr,           // at least this many dB: 20 log10(bounding-box diagonal / d_S), and less than 0.3 dB over it
     kError,          // d_S at most this share of the bounding-box diagonal
+    kDistance,       // d_S at most this many units of the mesh; of a scene, of the world
   };
   Kind kind = Kind::kPsnr;
   double value = 70.0;

@@ -139,6 +139,15 @@ TEST(EncodeMeshTest, ErrorTargetIsThePsnrTargetInAnotherUnit) {
   EXPECT_NEAR(error.report.levels.back().psnr, psnr.report.levels.back().psnr, 0.3);
 }
 
+TEST(EncodeMeshTest, DistanceTargetIsTheErrorTargetInUnitsOfTheMesh) {
+  const EncodedMesh error = EncodeOrDie(Scan(), OptionsFor(Kind::kError, 3.1622776601683794e-3));
+  const double most = 3.1622776601683794e-3 * error.report.diagonal;
+  const EncodedMesh distance = EncodeOrDie(Scan(), OptionsFor(Kind::kDistance, most));
+  EXPECT_LE(distance.report.levels.back().error, most);
+  EXPECT_GE(distance.report.levels.back().error, 0.96 * most);
+  EXPECT_EQ(distance.stream.size(), error.stream.size());
+}
+
 TEST(EncodeMeshTest, ReportsWhatTheStreamHolds) {
   const TriangleMesh mesh = Scan();
   const EncodedMesh encoded = EncodeOrDie(mesh, OptionsFor(Kind::kPsnr, 50));
@@ -386,7 +395,7 @@ TEST(EncodeMeshTest, RefusesDamagedMeshesByName) {
 
 TEST(EncodeMeshTest, RefusesTargetsThatMakeNoSense) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Kind kind : {Kind::kBytes, Kind::kBitsPerVertex, Kind::kPsnr, Kind::kError}) {
+  for (const Kind kind : {Kind::kBytes, Kind::kBitsPerVertex, Kind::kPsnr, Kind::kError, Kind::kDistance}) {
     for (const double value : {nan, -1.0, 0.0, 1e300}) {
       EXPECT_EQ(EncodeMesh(shapes::Icosphere(2), OptionsFor(kind, value)).status().code(), StatusCode::kInvalidArgument)
           << static_cast<int>(kind) << " " << value;

@@ -27,28 +27,35 @@ using ::testing::HasSubstr;
 using Kind = EncodeTarget::Kind;
 
 TEST(ResolveTargetTest, BringsUnitsTogether) {
-  const ResolvedTarget bytes = ResolveTarget({Kind::kBytes, 1234}, 10).value();
+  const ResolvedTarget bytes = ResolveTarget({Kind::kBytes, 1234}, 10, 1).value();
   EXPECT_TRUE(bytes.is_rate);
   EXPECT_EQ(bytes.bytes, 1234);
-  const ResolvedTarget rate = ResolveTarget({Kind::kBitsPerVertex, 0.5}, 48485).value();
+  const ResolvedTarget rate = ResolveTarget({Kind::kBitsPerVertex, 0.5}, 48485, 1).value();
   EXPECT_TRUE(rate.is_rate);
   EXPECT_DOUBLE_EQ(rate.bytes, 0.5 * 48485 / 8);
-  const ResolvedTarget psnr = ResolveTarget({Kind::kPsnr, 70}, 10).value();
+  const ResolvedTarget psnr = ResolveTarget({Kind::kPsnr, 70}, 10, 1).value();
   EXPECT_FALSE(psnr.is_rate);
   EXPECT_EQ(psnr.psnr, 70);
-  const ResolvedTarget error = ResolveTarget({Kind::kError, 1e-4}, 10).value();
+  const ResolvedTarget error = ResolveTarget({Kind::kError, 1e-4}, 10, 7).value();
   EXPECT_FALSE(error.is_rate);
   EXPECT_NEAR(error.psnr, 80, 1e-12);
+  const ResolvedTarget distance = ResolveTarget({Kind::kDistance, 7e-4}, 10, 7).value();
+  EXPECT_FALSE(distance.is_rate);
+  EXPECT_NEAR(distance.psnr, 80, 1e-12);
 }
 
 TEST(ResolveTargetTest, NamesTheValueThatMakesNoSense) {
-  const Status status = ResolveTarget({Kind::kPsnr, 500}, 10).status();
+  const Status status = ResolveTarget({Kind::kPsnr, 500}, 10, 1).status();
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
   EXPECT_THAT(status.message(), HasSubstr("500"));
   EXPECT_THAT(status.message(), HasSubstr("dB"));
-  for (const Kind kind : {Kind::kBytes, Kind::kBitsPerVertex, Kind::kPsnr, Kind::kError}) {
-    EXPECT_FALSE(ResolveTarget({kind, std::numeric_limits<double>::quiet_NaN()}, 10).ok());
-    EXPECT_FALSE(ResolveTarget({kind, std::numeric_limits<double>::infinity()}, 10).ok());
+  const Status far = ResolveTarget({Kind::kDistance, 3}, 10, 20).status();
+  EXPECT_EQ(far.code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(far.message(), HasSubstr("3 units"));
+  EXPECT_THAT(far.message(), HasSubstr("between 2e-06 and 2"));
+  for (const Kind kind : {Kind::kBytes, Kind::kBitsPerVertex, Kind::kPsnr, Kind::kError, Kind::kDistance}) {
+    EXPECT_FALSE(ResolveTarget({kind, std::numeric_limits<double>::quiet_NaN()}, 10, 1).ok());
+    EXPECT_FALSE(ResolveTarget({kind, std::numeric_limits<double>::infinity()}, 10, 1).ok());
   }
 }
 

@@ -195,6 +195,33 @@ TEST(Pack, ABudgetGoesWhereItLowersTheErrorOfTheSceneMost) {
   EXPECT_LT(after, before + 3.0) << before;
 }
 
+TEST(Pack, ADistanceIsOneOfTheWorld) {
+  AssetBuilder builder;
+  builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(13, 22))}));
+  constexpr double kScale = 4, kDistance = 0.05;
+  builder.document().json["nodes"][0]["scale"] = {kScale, kScale, kScale};
+  PackOptions options = Options(Fallback::kDraco);
+  options.encode.target = {EncodeTarget::Kind::kDistance, kDistance};
+  const auto packed = PackGltf(builder.Glb(), options);
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  const PrimitiveReport& ball = packed.value().report.primitives[0];
+  EXPECT_NEAR(ball.target_error, kDistance / kScale, 1e-6);
+  ASSERT_FALSE(ball.encode.levels.empty());
+  EXPECT_LE(ball.encode.levels.back().error, kDistance / kScale);
+  EXPECT_GE(ball.encode.levels.back().error, 0.9 * kDistance / kScale);
+}
+
+TEST(Pack, ADistanceNeedsSomethingToBeSeen) {
+  AssetBuilder builder;
+  builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(13, 22))}));
+  builder.document().json["scenes"][0]["nodes"] = Json::array();
+  PackOptions options = Options(Fallback::kDraco);
+  options.encode.target = {EncodeTarget::Kind::kDistance, 0.05};
+  const Status status = PackGltf(builder.Glb(), options).status();
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(status.message(), HasSubstr("shows no triangles"));
+}
+
 // Its tangents and thin parts decide, not its shape: with the shape let go of, collapses once took more triangles than at 70 dB.
 TEST(Pack, ALooserErrorTakesNoMoreBytes) {
   const std::string path = std::string(LACERTA_TEST_DATA_DIR) + "/Corset.glb";
