@@ -21,7 +21,7 @@ packages_of() {
     picture) echo f3d xvfb xauth imagemagick fonts-dejavu-core ;;
     plot) echo gnuplot-nox fonts-dejavu-core ;;
     fuzz) echo clang-14 libclang-rt-14-dev ;;
-    validate) echo nodejs npm ;;
+    validate) command -v npm >/dev/null || echo nodejs npm ;;
     batch) echo parallel snakemake ;;
     web) echo emscripten chromium; command -v npm >/dev/null || echo nodejs npm ;;
     lint) echo clang-format-14 clang-tidy-14 ;;
