@@ -161,7 +161,7 @@ StatusOr<std::vector<BatchItem>> PairOutputs(const std::vector<std::string>& pat
       const fs::path relative = fs::path(input).lexically_relative(pattern);
       if (fs::is_directory(pattern, error) && !relative.empty() && *relative.begin() != "..") below = relative;
     }
-    BatchItem item = {input, (fs::path(output) / below.replace_extension(extension)).string()};
+    BatchItem item = {input, (fs::path(output) / (extension.empty() ? below : below.replace_extension(extension))).string()};
     if (!known.insert(item.output).second) {
       return InvalidArgument(input + ": another input goes to " + item.output + " too");
     }
