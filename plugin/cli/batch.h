@@ -16,6 +16,7 @@ namespace lacerta::cli {
 struct BatchItem {
   std::string input;   // "-": standard input
   std::string output;  // "-": standard output
+  bool in_folder = false;  // one that is made where it is not there
 };
 
 struct BatchOptions {

@@ -284,28 +284,28 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
       ->required();
   CLI::Option_group* target = pack->add_option_group("target", "What to aim at (default: --psnr 70)");
   target->add_option("--bytes", arguments->bytes, "At most this many bytes of geometry, within 2 %")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   target->add_option("--bpv", arguments->bits_per_vertex, "At most this many bits per vertex of the input")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   target->add_option("--psnr", arguments->psnr, "At least this PSNR in dB, 20 log10(diagonal / error)")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   target->add_option("--error", arguments->error, "At most this surface error, as a share of the diagonal")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   target->require_option(0, 1);
   pack->add_option("--uv-error", arguments->attributes.uv_texels,
                    "At most this RMS error of texture coordinates, in texels of the asset's largest texture (at least 1024; default: 1)")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   pack->add_option("--custom-error", arguments->attributes.custom,
                    "Error of application attributes of floats, relative to their range (RMS); 0 keeps them exact")
       ->check(CLI::NonNegativeNumber);
   pack->add_option("--normal-error", arguments->attributes.normal_degrees,
                    "At most this RMS error of normals and tangents, in degrees (default: 2); of simplified surfaces over the 99 % of the "
                    "area where it is least")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   pack->add_option_function<double>(
           "--color-error", [arguments](double error) { arguments->attributes.color = error / 255; },
           "At most this RMS error of each component of colors, in 255ths (default: 0.29, as integers of 8 bits have)")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   pack->add_flag("--normals-everywhere", arguments->attributes.normals_everywhere,
                  "Hold the normals of simplified surfaces to --normal-error over their whole area");
   pack->add_option("--fallback", arguments->fallback, "What readers without the extension show (.glb; default: draco)")

@@ -115,7 +115,7 @@ void AddTrimCommand(CLI::App* app, int* exit_code) {
   CLI::Option_group* target = trim->add_option_group("target", "What to keep");
   target->add_option("--level", arguments->level, "Levels up to this one, 0 = base; those above that take no bytes stay")->check(CLI::NonNegativeNumber);
   target->add_option("--bytes", arguments->bytes, "As many refinements as fit into a file of this size")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   target->require_option(1);
   AddBatchOptions(trim, &arguments->batch);
   trim->add_flag("--json", arguments->batch.json, "Print a report as JSON");
