@@ -6,6 +6,7 @@
 #   plot      gnuplot, for the figures in docs/results
 #   fuzz      clang with libFuzzer
 #   validate  Node.js for the glTF validator
+#   models    files made to test importers of glTF, for tests/bench/asset_table --models
 #   batch     GNU parallel and Snakemake, to try the recipes of samples/batch
 #   web       emscripten and Node.js for plugin/web, Chromium for its browser tests
 #   lint      clang-format and clang-tidy
@@ -21,11 +22,12 @@ packages_of() {
     picture) echo f3d xvfb xauth imagemagick fonts-dejavu-core ;;
     plot) echo gnuplot-nox fonts-dejavu-core ;;
     fuzz) echo clang-14 libclang-rt-14-dev ;;
-    validate) echo nodejs npm ;;
+    validate) command -v npm >/dev/null || echo nodejs npm ;;
+    models) echo assimp-testmodels ;;
     batch) echo parallel snakemake ;;
     web) echo emscripten chromium; command -v npm >/dev/null || echo nodejs npm ;;
     lint) echo clang-format-14 clang-tidy-14 ;;
-    *) echo "unknown package set '$1'; $0 knows build, demo, picture, plot, fuzz, validate, batch, web, lint" >&2; return 2 ;;
+    *) echo "unknown package set '$1'; $0 knows build, demo, picture, plot, fuzz, validate, models, batch, web, lint" >&2; return 2 ;;
   esac
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "document/draco_primitive.h"
 
@@ -113,14 +114,13 @@ StatusOr<Primitive> ReadDraco(const GltfDocument& document, const Json& primitiv
   return result;
 }
 
-Status CheckPositions(const Primitive& primitive) {
+// accessor: of the positions, for messages.
+Status CheckFinite(const Primitive& primitive, const std::string& accessor) {
   const Attribute* position = primitive.Find("POSITION");
-  if (position == nullptr) return InvalidData("has no POSITION");
-  if (position->data.components != 3) return InvalidData("POSITION is not of type VEC3");
   for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
     for (uint32_t axis = 0; axis < 3; ++axis) {
       if (!std::isfinite(position->data.Float(v, axis))) {
-        return InvalidData("POSITION: vertex " + std::to_string(v) + " is not finite; repair or remove it");
+        return InvalidData(accessor + "POSITION: vertex " + std::to_string(v) + " is not finite; repair or remove it");
       }
     }
   }
@@ -141,7 +141,7 @@ std::vector<const Primitive*> PointersTo(const std::vector<Primitive>& primitive
   return pointers;
 }
 
-StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& primitive, const DecodeLimits& limits) {
+StatusOr<Primitive> ReadUncheckedPrimitive(const GltfDocument& document, const Json& primitive, const DecodeLimits& limits) {
   LACERTA_ASSIGN_OR_RETURN(const uint64_t mode, GetIndex(primitive, "mode", kTriangles));
   if (mode < kTriangles || mode > kTriangleFan) return Unsupported("holds points or lines, no triangles");
   const Json* extensions = Find(primitive, "extensions");
@@ -149,9 +149,19 @@ StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& prim
   StatusOr<Primitive> result =
       draco != nullptr ? ReadDraco(document, primitive, *draco, limits) : ReadPlain(document, primitive, mode);
   if (!result.ok()) return result.status();
-  LACERTA_RETURN_IF_ERROR(CheckPositions(result.value()));
+  const Attribute* position = result.value().Find("POSITION");
+  if (position == nullptr) return InvalidData("has no POSITION");
+  if (position->data.components != 3) return InvalidData("POSITION is not of type VEC3");
   std::vector<Attribute>& attributes = result.value().attributes;
   std::stable_partition(attributes.begin(), attributes.end(), [](const Attribute& a) { return a.name == "POSITION"; });
+  return result;
+}
+
+StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& primitive, const DecodeLimits& limits) {
+  LACERTA_ASSIGN_OR_RETURN(Primitive result, ReadUncheckedPrimitive(document, primitive, limits));
+  const Json* attributes = Find(primitive, "attributes");
+  const std::optional<uint64_t> accessor = attributes == nullptr ? std::nullopt : AsIndex(Find(*attributes, "POSITION"));
+  LACERTA_RETURN_IF_ERROR(CheckFinite(result, accessor.has_value() ? "accessor " + std::to_string(*accessor) + ": " : ""));
   return result;
 }
 

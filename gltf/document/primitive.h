@@ -34,6 +34,9 @@ std::vector<const Primitive*> PointersTo(const std::vector<Primitive>& primitive
 // what breaks the format; messages name accessor and index.
 StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& primitive, const DecodeLimits& limits);
 
+// The same, but positions may be anything.
+StatusOr<Primitive> ReadUncheckedPrimitive(const GltfDocument& document, const Json& primitive, const DecodeLimits& limits);
+
 // Positions (as float, normalized integers scaled) and triangles alone.
 TriangleMesh Surface(const Primitive& primitive);
 

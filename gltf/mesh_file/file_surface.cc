@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -11,6 +12,7 @@ namespace lacerta {
 namespace {
 
 constexpr uint32_t kNone = MeshAttribute::kNoValue;
+constexpr const char* kRepaired = "repaired: ";  // notes on the shape itself
 
 bool HasAll(const Triangle& corners) { return std::find(corners.begin(), corners.end(), kNone) == corners.end(); }
 
@@ -181,7 +183,54 @@ FileMesh ShapeOf(FileMesh mesh) {
   shape.mesh.surface = std::move(mesh.mesh.surface);
   shape.origin = mesh.origin;
   shape.group_materials = {FileMesh::kNoMaterial};
+  std::copy_if(mesh.notes.begin(), mesh.notes.end(), std::back_inserter(shape.notes), [](const std::string& note) { return note.rfind(kRepaired, 0) == 0; });
   return shape;
+}
+
+Status RemoveNotFinite(FileSurface* surface) {
+  TriangleMesh& mesh = surface->surface;
+  const auto is_finite = [&](uint32_t v) {
+    const Vec3f& p = mesh.positions[v];
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  };
+  const size_t num_before = mesh.triangles.size();
+  size_t kept = 0;
+  for (size_t f = 0; f < num_before; ++f) {
+    const Triangle t = mesh.triangles[f];
+    if (!is_finite(t[0]) || !is_finite(t[1]) || !is_finite(t[2])) continue;
+    mesh.triangles[kept] = t;
+    for (CornerValues& values : surface->attributes) {
+      if (!values.attribute.corners.empty()) values.attribute.corners[kept] = values.attribute.corners[f];
+    }
+    if (!surface->triangle_materials.empty()) surface->triangle_materials[kept] = surface->triangle_materials[f];
+    ++kept;
+  }
+  if (kept == 0) return InvalidData("has no triangle with finite positions; it cannot be repaired");
+  mesh.triangles.resize(kept);
+  if (!surface->triangle_materials.empty()) surface->triangle_materials.resize(kept);
+  uint64_t removed = 0;
+  for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
+    if (is_finite(v)) continue;
+    mesh.positions[v] = mesh.positions[mesh.triangles[0][0]];
+    ++removed;
+  }
+  uint64_t mended = 0;
+  for (CornerValues& values : surface->attributes) {
+    MeshAttribute& attribute = values.attribute;
+    if (!attribute.corners.empty()) attribute.corners.resize(kept);
+    for (size_t i = 0; attribute.kind == AttributeKind::kNormal && i < attribute.num_values(); ++i) {
+      float* const normal = attribute.values.data() + 3 * i;
+      if (std::isfinite(normal[0]) && std::isfinite(normal[1]) && std::isfinite(normal[2])) continue;
+      std::fill(normal, normal + 3, 0.0f);  // which ToFileMesh takes for none
+      ++mended;
+    }
+  }
+  if (removed > 0) {
+    surface->notes.push_back(kRepaired + std::to_string(removed) + " vertices without a finite position removed with " +
+                             std::to_string(num_before - kept) + " triangles");
+  }
+  if (mended > 0) surface->notes.push_back(kRepaired + std::to_string(mended) + " normals that were not finite made from the surface");
+  return Status();
 }
 
 FileMesh ToFileMesh(FileSurface surface, std::vector<FileMaterial> materials, std::vector<FileImage> images) {

@@ -39,6 +39,10 @@ struct FileSurface {
   std::vector<std::string> notes;
 };
 
+// Takes the triangles of vertices without a finite position off, with a note; such vertices lie where another does then. Normals that are not
+// finite become those that the surface tells. Fails with kInvalidData where no triangle is left.
+Status RemoveNotFinite(FileSurface* surface);
+
 // Leaves aside, with a note, what has rows that are not there or not finite; makes normals unit vectors, those without length what the
 // surface tells; makes colors linear; takes off what is the same everywhere; sorts faces into groups. `materials`: of surface.material_names.
 FileMesh ToFileMesh(FileSurface surface, std::vector<FileMaterial> materials, std::vector<FileImage> images);

@@ -5,15 +5,20 @@
 
 namespace lacerta {
 
-Status AppendPosition(double x, double y, double z, const Vec3d& origin, TriangleMesh* mesh) {
+Status AppendPosition(double x, double y, double z, const PositionRules& rules, TriangleMesh* mesh) {
   constexpr double kLargest = std::numeric_limits<float>::max();
   for (const double value : {x, y, z}) {
     if (!(std::abs(value) <= kLargest)) {  // written so that NaN fails
+      if (rules.keep_not_finite) {
+        constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+        mesh->positions.push_back({kNan, kNan, kNan});
+        return Status();
+      }
       return InvalidData("vertex " + std::to_string(mesh->positions.size()) + ": coordinate " + std::to_string(value) +
                          " is not a finite 32-bit float; repair or remove the vertex");
     }
   }
-  mesh->positions.push_back(Vec3Cast<float>(Vec3d{x, y, z} - origin));
+  mesh->positions.push_back(Vec3Cast<float>(Vec3d{x, y, z} - rules.origin));
   return Status();
 }
 

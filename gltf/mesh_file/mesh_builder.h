@@ -11,8 +11,14 @@
 
 namespace lacerta {
 
-// Appends a position relative to `origin`; fails with kInvalidData when a coordinate is not finite as a float.
-Status AppendPosition(double x, double y, double z, const Vec3d& origin, TriangleMesh* mesh);
+// How positions are taken.
+struct PositionRules {
+  Vec3d origin = {};            // they are relative to it
+  bool keep_not_finite = false;  // those that are not finite become NaN, for RemoveNotFinite, instead of being refused
+};
+
+// Appends a position; fails with kInvalidData when a coordinate is not finite as a float, unless such are kept.
+Status AppendPosition(double x, double y, double z, const PositionRules& rules, TriangleMesh* mesh);
 
 // Appends a polygon as a fan around its first corner. `face` is its number in the file, counted from 0. Indices are
 // counted from 0 and have to lie below num_vertices, which need not be mesh->positions.size() yet.

@@ -66,23 +66,23 @@ void NoteDracoAttributes(Span<const uint8_t> bytes, std::vector<std::string>* no
   for (const std::string& kind : kinds.value()) notes->push_back(kind + " of the Draco stream is left aside");
 }
 
-StatusOr<FileSurface> ParseFile(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, const Vec3d& origin) {
+StatusOr<FileSurface> ParseFile(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, const PositionRules& rules) {
   if (bytes.empty()) return InvalidData("the file is empty");
   if (IsUtf16(bytes)) return Unsupported("the file is UTF-16 text; save it as UTF-8 or ASCII");
   if (BeginsWith(bytes, "\xEF\xBB\xBF")) bytes = bytes.Subspan(3);  // the mark of UTF-8
   switch (format) {
     case MeshFormat::kPly:
-      return ParsePly(bytes, origin);
+      return ParsePly(bytes, rules);
     case MeshFormat::kObj:
-      return ParseObj(bytes, origin);
+      return ParseObj(bytes, rules);
     case MeshFormat::kOff:
-      return ParseOff(bytes, origin);
+      return ParseOff(bytes, rules);
     case MeshFormat::kStl:
-      return ParseStl(bytes, origin);
+      return ParseStl(bytes, rules);
     case MeshFormat::kDrc:
-      return ParseDrc(bytes, origin);
+      return ParseDrc(bytes, rules.origin);
     case MeshFormat::kGltf:
-      return ParseGltfSurface(bytes, folder, origin);
+      return ParseGltfSurface(bytes, folder, rules.origin);
   }
   return InternalError("a mesh format without a parser");
 }
@@ -132,16 +132,21 @@ Vec3d FarOrigin(const TriangleMesh& mesh) {
 }
 
 StatusOr<TriangleMesh> ParseMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, const Vec3d& origin) {
-  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder, origin));
+  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder, {origin, false}));
   return std::move(surface.surface);
 }
 
-StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder) {
+StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, bool repair) {
   if (format == MeshFormat::kGltf) return InvalidArgument("glTF assets are more than a mesh");
-  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder, {}));
+  const auto parse = [&](const Vec3d& origin) -> StatusOr<FileSurface> {
+    LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder, {origin, repair}));
+    if (repair) LACERTA_RETURN_IF_ERROR(RemoveNotFinite(&surface));
+    return surface;
+  };
+  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, parse({}));
   const Vec3d origin = FarOrigin(surface.surface);
   if (origin != Vec3d{}) {
-    LACERTA_ASSIGN_OR_RETURN(surface, ParseFile(bytes, format, folder, origin));
+    LACERTA_ASSIGN_OR_RETURN(surface, parse(origin));
   }
   if (format == MeshFormat::kDrc) NoteDracoAttributes(bytes, &surface.notes);
   FileMaterials materials = LoadMaterials(folder, &surface);

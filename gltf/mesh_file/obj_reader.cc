@@ -31,7 +31,7 @@ bool NextLogicalLine(TextScanner* scanner, std::string* joined, std::string_view
 }
 
 // A vertex, and the color that some programs write after it.
-Status ReadVertex(std::string_view words, const Vec3d& origin, TriangleMesh* mesh, MeshAttribute* colors) {
+Status ReadVertex(std::string_view words, const PositionRules& rules, TriangleMesh* mesh, MeshAttribute* colors) {
   double xyz[3];
   for (double& value : xyz) {
     const std::string_view word = TakeWord(&words);
@@ -43,7 +43,7 @@ Status ReadVertex(std::string_view words, const Vec3d& origin, TriangleMesh* mes
   double rgb[3];
   const bool has_color = ParseDouble(TakeWord(&words), &rgb[0]) && ParseDouble(TakeWord(&words), &rgb[1]) && ParseDouble(TakeWord(&words), &rgb[2]);
   if (has_color) colors->values.insert(colors->values.end(), {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])});
-  return AppendPosition(xyz[0], xyz[1], xyz[2], origin, mesh);
+  return AppendPosition(xyz[0], xyz[1], xyz[2], rules, mesh);
 }
 
 // A row of a texture coordinate or of a normal. What is no number becomes none, and is refused where it is used.
@@ -79,11 +79,11 @@ uint32_t RowOf(std::string_view word, CornerValues* values) {
 
 class ObjReader {
  public:
-  explicit ObjReader(const Vec3d& origin) : origin_(origin) {}
+  explicit ObjReader(const PositionRules& rules) : rules_(rules) {}
 
   Status ReadLine(std::string_view line, size_t number) {
     const std::string_view keyword = TakeWord(&line);
-    if (keyword == "v") return ReadVertex(line, origin_, &surface_.surface, &colors_.attribute);
+    if (keyword == "v") return ReadVertex(line, rules_, &surface_.surface, &colors_.attribute);
     if (keyword == "vt") {
       ReadRow(line, &texture_.attribute);
     } else if (keyword == "vn") {
@@ -165,7 +165,7 @@ class ObjReader {
     CountFromZeroToOne(&colors);
   }
 
-  const Vec3d origin_;
+  const PositionRules rules_;
   FileSurface surface_;
   CornerValues texture_ = TextureValues(), normals_ = NormalValues(), colors_ = ColorValues(3);
   std::map<std::string, uint32_t> materials_;  // by name
@@ -178,9 +178,9 @@ class ObjReader {
 
 }  // namespace
 
-StatusOr<FileSurface> ParseObj(Span<const uint8_t> bytes, const Vec3d& origin) {
+StatusOr<FileSurface> ParseObj(Span<const uint8_t> bytes, const PositionRules& rules) {
   TextScanner scanner({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  ObjReader reader(origin);
+  ObjReader reader(rules);
   std::string joined;
   std::string_view line;
   while (NextLogicalLine(&scanner, &joined, &line)) {

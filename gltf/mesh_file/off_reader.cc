@@ -45,14 +45,14 @@ Status ParseCount(std::string_view* words, const char* what, uint64_t* count) {
   return Status();
 }
 
-Status ReadVertex(std::string_view line, const Vec3d& origin, TriangleMesh* mesh) {
+Status ReadVertex(std::string_view line, const PositionRules& rules, TriangleMesh* mesh) {
   double xyz[3];
   for (double& value : xyz) {
     const std::string_view word = TakeWord(&line);
     if (!ParseDouble(word, &value))
       return InvalidData("\"" + std::string(word.substr(0, 40)) + "\" is not a coordinate");
   }
-  return AppendPosition(xyz[0], xyz[1], xyz[2], origin, mesh);
+  return AppendPosition(xyz[0], xyz[1], xyz[2], rules, mesh);
 }
 
 Status ReadFace(std::string_view line, uint64_t face, std::vector<int64_t>* corners, TriangleMesh* mesh) {
@@ -70,7 +70,7 @@ Status ReadFace(std::string_view line, uint64_t face, std::vector<int64_t>* corn
   return AppendPolygon(*corners, mesh->positions.size(), face, mesh);
 }
 
-Status ReadAll(TextScanner* scanner, const Vec3d& origin, FileSurface* surface) {
+Status ReadAll(TextScanner* scanner, const PositionRules& rules, FileSurface* surface) {
   TriangleMesh* const mesh = &surface->surface;
   std::string_view line;
   LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
@@ -87,7 +87,7 @@ Status ReadAll(TextScanner* scanner, const Vec3d& origin, FileSurface* surface) 
   mesh->positions.reserve(static_cast<size_t>(num_vertices));
   for (uint64_t v = 0; v < num_vertices; ++v) {
     LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
-    LACERTA_RETURN_IF_ERROR(ReadVertex(line, origin, mesh));
+    LACERTA_RETURN_IF_ERROR(ReadVertex(line, rules, mesh));
   }
   LACERTA_RETURN_IF_ERROR(CheckCount(num_faces, 8, scanner->bytes_left() + 1, "faces"));
   mesh->triangles.reserve(static_cast<size_t>(num_faces));
@@ -101,10 +101,10 @@ Status ReadAll(TextScanner* scanner, const Vec3d& origin, FileSurface* surface) 
 
 }  // namespace
 
-StatusOr<FileSurface> ParseOff(Span<const uint8_t> bytes, const Vec3d& origin) {
+StatusOr<FileSurface> ParseOff(Span<const uint8_t> bytes, const PositionRules& rules) {
   TextScanner scanner({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   FileSurface surface;
-  const Status status = ReadAll(&scanner, origin, &surface);
+  const Status status = ReadAll(&scanner, rules, &surface);
   if (!status.ok()) return status.WithContext(scanner.LineName());
   LACERTA_RETURN_IF_ERROR(CheckNotEmpty(surface.surface));
   return surface;

@@ -168,7 +168,7 @@ Status PlaceUnseen(const std::vector<UnseenVertex>& unseen, TriangleMesh* mesh) 
 }
 
 template <typename Values>
-Status ReadVertices(const PlyElement& element, const Vec3d& origin, Values* values, TriangleMesh* mesh, VertexAttributes* attributes,
+Status ReadVertices(const PlyElement& element, const PositionRules& rules, Values* values, TriangleMesh* mesh, VertexAttributes* attributes,
                     std::vector<UnseenVertex>* unseen) {
   const VertexColumns columns(element);
   const char* const axes[3] = {"x", "y", "z"};
@@ -184,7 +184,7 @@ Status ReadVertices(const PlyElement& element, const Vec3d& origin, Values* valu
   for (uint64_t v = 0; v < element.count; ++v) {
     LACERTA_RETURN_IF_ERROR(ReadRow(element, values, [&](size_t property, double value) { row[property] = value; }));
     const auto [x, y, z] = columns.position;
-    if (!AppendPosition(row[static_cast<size_t>(x)], row[static_cast<size_t>(y)], row[static_cast<size_t>(z)], origin, mesh).ok()) {
+    if (!AppendPosition(row[static_cast<size_t>(x)], row[static_cast<size_t>(y)], row[static_cast<size_t>(z)], rules, mesh).ok()) {
       unseen->push_back({static_cast<uint32_t>(v), values->Where()});
       mesh->positions.push_back({});
     }
@@ -309,7 +309,7 @@ uint64_t LeastRowBytes(const PlyElement& element) {
 }
 
 template <typename Values>
-StatusOr<FileSurface> ReadBody(const PlyHeader& header, const Vec3d& origin, Values* values) {
+StatusOr<FileSurface> ReadBody(const PlyHeader& header, const PositionRules& rules, Values* values) {
   FileSurface surface;
   surface.textures = header.textures;
   TriangleMesh& mesh = surface.surface;
@@ -326,7 +326,7 @@ StatusOr<FileSurface> ReadBody(const PlyHeader& header, const Vec3d& origin, Val
                                        values->bytes_left() + Values::kSlack, "rows of element " + element.name));
     Status status;
     if (element.name == "vertex") {
-      status = ReadVertices(element, origin, values, &mesh, &attributes, &unseen);
+      status = ReadVertices(element, rules, values, &mesh, &attributes, &unseen);
     } else if (element.name == "face") {
       status = ReadFaces(element, num_vertices, values, &surface, &wedges);
     } else if (element.name == "tristrips") {
@@ -355,15 +355,15 @@ StatusOr<FileSurface> ReadBody(const PlyHeader& header, const Vec3d& origin, Val
 
 }  // namespace
 
-StatusOr<FileSurface> ParsePly(Span<const uint8_t> bytes, const Vec3d& origin) {
+StatusOr<FileSurface> ParsePly(Span<const uint8_t> bytes, const PositionRules& rules) {
   LACERTA_ASSIGN_OR_RETURN(const PlyHeader header, ParsePlyHeader(bytes));
   if (header.encoding == PlyEncoding::kAscii) {
     const Span<const uint8_t> body = bytes.Subspan(header.size);
     AsciiValues values({reinterpret_cast<const char*>(body.data()), body.size()}, header.lines);
-    return ReadBody(header, origin, &values);
+    return ReadBody(header, rules, &values);
   }
   BinaryValues values(bytes, header.size, header.encoding == PlyEncoding::kBigEndian);
-  return ReadBody(header, origin, &values);
+  return ReadBody(header, rules, &values);
 }
 
 }  // namespace lacerta

@@ -1,4 +1,4 @@
-// One parser per format; what they promise is in lacerta/mesh_file.h (ParseMesh, ParseFileMesh). Positions are relative to `origin`.
+// One parser per format; what they promise is in lacerta/mesh_file.h (ParseMesh, ParseFileMesh). Positions are taken by `rules`.
 #ifndef LACERTA_MESH_FILE_READERS_H_
 #define LACERTA_MESH_FILE_READERS_H_
 
@@ -7,13 +7,14 @@
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
 #include "mesh_file/file_surface.h"
+#include "mesh_file/mesh_builder.h"
 
 namespace lacerta {
 
-StatusOr<FileSurface> ParsePly(Span<const uint8_t> bytes, const Vec3d& origin);
-StatusOr<FileSurface> ParseObj(Span<const uint8_t> bytes, const Vec3d& origin);
-StatusOr<FileSurface> ParseOff(Span<const uint8_t> bytes, const Vec3d& origin);
-StatusOr<FileSurface> ParseStl(Span<const uint8_t> bytes, const Vec3d& origin);
+StatusOr<FileSurface> ParsePly(Span<const uint8_t> bytes, const PositionRules& rules);
+StatusOr<FileSurface> ParseObj(Span<const uint8_t> bytes, const PositionRules& rules);
+StatusOr<FileSurface> ParseOff(Span<const uint8_t> bytes, const PositionRules& rules);
+StatusOr<FileSurface> ParseStl(Span<const uint8_t> bytes, const PositionRules& rules);
 
 }  // namespace lacerta
 

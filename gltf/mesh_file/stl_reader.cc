@@ -29,7 +29,7 @@ void AppendLastThree(TriangleMesh* mesh) {
   mesh->triangles.push_back({end - 3, end - 2, end - 1});
 }
 
-Status ReadBinary(Span<const uint8_t> bytes, const Vec3d& origin, TriangleMesh* mesh) {
+Status ReadBinary(Span<const uint8_t> bytes, const PositionRules& rules, TriangleMesh* mesh) {
   if (bytes.size() < kHeaderSize) {
     return InvalidData("a binary STL file has at least 84 bytes, this one " + std::to_string(bytes.size()));
   }
@@ -41,7 +41,7 @@ Status ReadBinary(Span<const uint8_t> bytes, const Vec3d& origin, TriangleMesh* 
     const size_t offset = kHeaderSize + t * kTriangleSize;
     for (size_t corner = 0; corner < 3; ++corner) {
       const uint8_t* p = bytes.data() + offset + 12 * (corner + 1);
-      const Status status = AppendPosition(ReadFloat(p), ReadFloat(p + 4), ReadFloat(p + 8), origin, mesh);
+      const Status status = AppendPosition(ReadFloat(p), ReadFloat(p + 4), ReadFloat(p + 8), rules, mesh);
       if (!status.ok()) return status.WithContext("byte " + std::to_string(offset + 12 * (corner + 1)));
     }
     AppendLastThree(mesh);
@@ -49,7 +49,7 @@ Status ReadBinary(Span<const uint8_t> bytes, const Vec3d& origin, TriangleMesh* 
   return Status();
 }
 
-Status ReadCorner(TextScanner* scanner, const Vec3d& origin, TriangleMesh* mesh) {
+Status ReadCorner(TextScanner* scanner, const PositionRules& rules, TriangleMesh* mesh) {
   double xyz[3];
   for (double& value : xyz) {
     std::string_view word;
@@ -57,18 +57,18 @@ Status ReadCorner(TextScanner* scanner, const Vec3d& origin, TriangleMesh* mesh)
     if (!ParseDouble(word, &value))
       return InvalidData("\"" + std::string(word.substr(0, 40)) + "\" is not a coordinate");
   }
-  return AppendPosition(xyz[0], xyz[1], xyz[2], origin, mesh);
+  return AppendPosition(xyz[0], xyz[1], xyz[2], rules, mesh);
 }
 
 // Only the words that carry the surface are looked at: vertex, endloop, endsolid.
-Status ReadText(TextScanner* scanner, const Vec3d& origin, TriangleMesh* mesh) {
+Status ReadText(TextScanner* scanner, const PositionRules& rules, TriangleMesh* mesh) {
   std::string_view line;
   if (!scanner->NextLine(&line)) return InvalidData("the file is empty");  // "solid" and a name of any words
   size_t corners = 0;
   bool ended = false;
   for (std::string_view word; scanner->NextWord(&word);) {
     if (word == "vertex") {
-      LACERTA_RETURN_IF_ERROR(ReadCorner(scanner, origin, mesh));
+      LACERTA_RETURN_IF_ERROR(ReadCorner(scanner, rules, mesh));
       ++corners;
     } else if (word == "endloop") {
       if (corners != 3) {
@@ -99,14 +99,14 @@ bool IsBinary(Span<const uint8_t> bytes) {
 
 }  // namespace
 
-StatusOr<FileSurface> ParseStl(Span<const uint8_t> bytes, const Vec3d& origin) {
+StatusOr<FileSurface> ParseStl(Span<const uint8_t> bytes, const PositionRules& rules) {
   FileSurface surface;
   TriangleMesh& mesh = surface.surface;
   if (IsBinary(bytes)) {
-    LACERTA_RETURN_IF_ERROR(ReadBinary(bytes, origin, &mesh));
+    LACERTA_RETURN_IF_ERROR(ReadBinary(bytes, rules, &mesh));
   } else {
     TextScanner scanner({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    const Status status = ReadText(&scanner, origin, &mesh);
+    const Status status = ReadText(&scanner, rules, &mesh);
     if (!status.ok()) return status.WithContext(scanner.LineName());
   }
   LACERTA_RETURN_IF_ERROR(CheckNotEmpty(mesh));

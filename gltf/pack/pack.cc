@@ -10,6 +10,7 @@
 #include "lacerta/gltf.h"
 #include "pack/accessor_pool.h"
 #include "pack/plan.h"
+#include "pack/repair.h"
 #include "pack/replace_geometry.h"
 #include "pack/single_mesh.h"
 
@@ -233,7 +234,13 @@ StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& opti
 StatusOr<PackResult> PackGltf(Span<const uint8_t> asset, const PackOptions& options) {
   return WithinMemory([&]() -> StatusOr<PackResult> {
     LACERTA_ASSIGN_OR_RETURN(GltfDocument document, ParseGltf(asset, options.folder));
-    return PackDocument(std::move(document), options);
+    std::vector<std::string> notes;
+    if (options.repair) {
+      LACERTA_ASSIGN_OR_RETURN(notes, RepairDocument(&document));
+    }
+    LACERTA_ASSIGN_OR_RETURN(PackResult result, PackDocument(std::move(document), options));
+    result.report.notes.insert(result.report.notes.begin(), notes.begin(), notes.end());
+    return result;
   });
 }
 

@@ -7,21 +7,10 @@
 #include "document/buffer_edit.h"
 #include "document/lattice.h"
 #include "extension/progressive.h"
+#include "pack/repair.h"
 
 namespace lacerta {
 namespace {
-
-// Why a primitive has to stay as it is whatever it holds; empty when it need not.
-std::string ReasonToKeep(const Json& primitive) {
-  if (AsIndex(Find(primitive, "mode")).value_or(4) < 4) return "holds points or lines";
-  if (const Json* extensions = Find(primitive, "extensions"); extensions != nullptr && extensions->is_object()) {
-    for (const auto& [name, value] : extensions->items()) {
-      if (name != kDracoName && name != "KHR_materials_variants")
-        return "has the extension " + name + ", which may refer to its vertices";
-    }
-  }
-  return "";
-}
 
 uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primitive& primitive) {
   if (const Json* draco = PrimitiveExtension(json, kDracoName); draco != nullptr) {
@@ -36,29 +25,6 @@ uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primi
     if (indices.ok()) sum += indices.value().bytes.size();
   }
   return sum;
-}
-
-StatusOr<std::vector<MorphTarget>> ReadTargets(const GltfDocument& document, const Json& json, uint64_t num_vertices) {
-  std::vector<MorphTarget> targets;
-  for (uint64_t t = 0; t < ArraySize(json, "targets"); ++t) {
-    const Json& attributes = *FindElement(json, "targets", t);
-    const std::string where = "morph target " + std::to_string(t);
-    if (!attributes.is_object()) return InvalidData(where + " is no object");
-    MorphTarget target;
-    for (const auto& [name, index] : attributes.items()) {
-      const std::optional<uint64_t> accessor = AsIndex(&index);
-      if (!accessor.has_value()) return InvalidData(where + ": " + name + " is no accessor index");
-      StatusOr<AccessorData> data = ReadAccessor(document, *accessor);
-      if (!data.ok()) return data.status().WithContext(where + ": " + name);
-      if (data.value().count != num_vertices) {
-        return InvalidData(where + ": " + name + " has " + std::to_string(data.value().count) +
-                           " elements, the primitive has " + std::to_string(num_vertices) + " vertices");
-      }
-      target.push_back({name, std::move(data).value()});
-    }
-    targets.push_back(std::move(target));
-  }
-  return targets;
 }
 
 void RoundAnew(Primitive* primitive) {
@@ -80,6 +46,7 @@ Status ReadSource(const GltfDocument& document, const Json& json, Source* source
     if (status.code() == StatusCode::kUnsupported) source->reason = status.message();
     if (!status.ok()) return status.code() == StatusCode::kUnsupported ? Status() : status;
   }
+  LACERTA_RETURN_IF_ERROR(CheckFinite(json, primitive.value(), targets.value()));
   source->stored_bytes = StoredBytes(document, json, primitive.value());
   source->primitive = std::move(primitive).value();
   source->targets = std::move(targets).value();
@@ -133,6 +100,40 @@ std::vector<Source> Merge(std::vector<Source> sources) {
 }
 
 }  // namespace
+
+std::string ReasonToKeep(const Json& primitive) {
+  if (AsIndex(Find(primitive, "mode")).value_or(4) < 4) return "holds points or lines";
+  if (const Json* extensions = Find(primitive, "extensions"); extensions != nullptr && extensions->is_object()) {
+    for (const auto& [name, value] : extensions->items()) {
+      if (name != kDracoName && name != "KHR_materials_variants")
+        return "has the extension " + name + ", which may refer to its vertices";
+    }
+  }
+  return "";
+}
+
+StatusOr<std::vector<MorphTarget>> ReadTargets(const GltfDocument& document, const Json& json, uint64_t num_vertices) {
+  std::vector<MorphTarget> targets;
+  for (uint64_t t = 0; t < ArraySize(json, "targets"); ++t) {
+    const Json& attributes = *FindElement(json, "targets", t);
+    const std::string where = "morph target " + std::to_string(t);
+    if (!attributes.is_object()) return InvalidData(where + " is no object");
+    MorphTarget target;
+    for (const auto& [name, index] : attributes.items()) {
+      const std::optional<uint64_t> accessor = AsIndex(&index);
+      if (!accessor.has_value()) return InvalidData(where + ": " + name + " is no accessor index");
+      StatusOr<AccessorData> data = ReadAccessor(document, *accessor);
+      if (!data.ok()) return data.status().WithContext(where + ": " + name);
+      if (data.value().count != num_vertices) {
+        return InvalidData(where + ": " + name + " has " + std::to_string(data.value().count) +
+                           " elements, the primitive has " + std::to_string(num_vertices) + " vertices");
+      }
+      target.push_back({name, std::move(data).value()});
+    }
+    targets.push_back(std::move(target));
+  }
+  return targets;
+}
 
 StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document) {
   std::vector<Source> sources;

@@ -26,9 +26,15 @@ struct Source {
   uint64_t stored_bytes = 0;  // of attributes and indices in one set of accessors; 0 where there is no primitive
 };
 
+// Why a primitive has to stay as it is whatever it holds; empty when it need not.
+std::string ReasonToKeep(const Json& primitive);
+
+// The morph targets of the primitive `json`.
+StatusOr<std::vector<MorphTarget>> ReadTargets(const GltfDocument& document, const Json& json, uint64_t num_vertices);
+
 // Reads all primitives. Those with equal accessors, and those with other accessors of equal content, are one source.
 // Quantized positions, directions and texture coordinates (KHR_mesh_quantization) become floats: they are rounded anew.
-// Fails with kInvalidData on damaged data, naming mesh, primitive, accessor and index; what is legal but cannot be
+// Fails with kInvalidData on damaged data and on numbers that are not finite, naming mesh, primitive, accessor and index; what is legal but cannot be
 // compressed ends as a reason.
 StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document);
 

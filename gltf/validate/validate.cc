@@ -10,6 +10,7 @@
 #include "extension/progressive.h"
 #include "lacerta/gltf.h"
 #include "lacerta/surface_distance.h"
+#include "pack/repair.h"
 #include "pack/single_mesh.h"
 #include "unpack/surface_reader.h"
 
@@ -134,7 +135,11 @@ class Validator {
 
   void CheckPlain(const Place& place) {
     const StatusOr<Primitive> read = ReadPrimitive(document_, PrimitiveAt(document_, place), options_.limits);
-    if (read.ok()) return Measure(place, Surface(read.value()), std::nullopt, std::nullopt);
+    if (read.ok()) {
+      const Status finite = CheckFinite(PrimitiveAt(document_, place), read.value(), {});
+      if (!finite.ok()) Error(PlaceName(document_, place), finite.message());
+      return Measure(place, Surface(read.value()), std::nullopt, std::nullopt);
+    }
     if (read.status().code() != StatusCode::kUnsupported) Error(PlaceName(document_, place), read.status().message());
   }
 

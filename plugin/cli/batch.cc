@@ -148,7 +148,7 @@ StatusOr<std::vector<BatchItem>> PairOutputs(const std::vector<std::string>& pat
   std::error_code error;
   const bool several = inputs.size() > 1 || fs::is_directory(patterns[0], error) || HasWildcard(patterns[0]);
   const bool folder = several || fs::is_directory(output, error) || (!output.empty() && output.back() == '/');
-  if (!folder) return std::vector<BatchItem>{{inputs[0], output}};
+  if (!folder) return std::vector<BatchItem>{{inputs[0], output, false}};
   if (output == "-") return InvalidArgument("standard output takes one file; give a folder for several");
   if (several && !fs::path(output).extension().empty() && !fs::is_directory(output, error)) {
     return InvalidArgument(output + ": several inputs need a folder to go to");
@@ -161,7 +161,7 @@ StatusOr<std::vector<BatchItem>> PairOutputs(const std::vector<std::string>& pat
       const fs::path relative = fs::path(input).lexically_relative(pattern);
       if (fs::is_directory(pattern, error) && !relative.empty() && *relative.begin() != "..") below = relative;
     }
-    BatchItem item = {input, (fs::path(output) / below.replace_extension(extension)).string()};
+    BatchItem item = {input, (fs::path(output) / (extension.empty() ? below : below.replace_extension(extension))).string(), true};
     if (!known.insert(item.output).second) {
       return InvalidArgument(input + ": another input goes to " + item.output + " too");
     }
@@ -182,7 +182,7 @@ int RunBatch(const std::vector<BatchItem>& items, const BatchOptions& options,
       if (!skip) {
         std::error_code error;
         const fs::path folder = fs::path(items[i].output).parent_path();
-        if (items.size() > 1 && !folder.empty()) fs::create_directories(folder, error);
+        if (items[i].in_folder && !folder.empty()) fs::create_directories(folder, error);
         outcomes[i] = Convert(items[i], convert);
       }
       const std::lock_guard<std::mutex> lock(telling);

@@ -16,6 +16,7 @@ namespace lacerta::cli {
 struct BatchItem {
   std::string input;   // "-": standard input
   std::string output;  // "-": standard output
+  bool in_folder = false;  // one that is made where it is not there
 };
 
 struct BatchOptions {
@@ -31,7 +32,7 @@ StatusOr<std::vector<std::string>> ExpandInputs(const std::vector<std::string>& 
                                                 const std::vector<std::string>& extensions);
 
 // One input and an output that is no folder go together. Else `output` is a folder, which is made, and an input goes to
-// its name with `extension`, in the subfolder that it has below the folder it was found in. Fails with kInvalidArgument
+// its name with `extension` (its own where that is empty), in the subfolder that it has below the folder it was found in. Fails with kInvalidArgument
 // where two inputs would go to one output.
 StatusOr<std::vector<BatchItem>> PairOutputs(const std::vector<std::string>& patterns,
                                              const std::vector<std::string>& inputs, const std::string& output,

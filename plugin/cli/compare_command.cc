@@ -63,7 +63,7 @@ void AddCompareCommand(CLI::App* app, int* exit_code) {
   CLI::App* compare = app->add_subcommand("compare", "Measure the distance between two surfaces, both ways");
   compare->add_option("A", arguments->original, "The original; its diagonal is the peak of the PSNR")->required();
   compare->add_option("B", arguments->other, "The mesh to judge; packed files at their finest level")->required();
-  compare->add_option("--samples", arguments->samples, "Points on each surface")->check(CLI::PositiveNumber);
+  compare->add_option("--samples", arguments->samples, "Points on each surface")->check(Positive());
   compare->add_flag("--json", arguments->json, "Print as JSON");
   compare->footer(kExitCodeHelp);
   compare->callback([arguments, exit_code] { *exit_code = Finish(RunCompare(*arguments)); });

@@ -38,6 +38,7 @@ struct PackArguments {
   bool external = false;
   bool keep_vertices = false;
   bool shape_only = false;
+  bool repair = false;
   BatchOptions batch;
   bool tables = false;  // somebody is looking
 };
@@ -90,6 +91,18 @@ bool MissesTarget(const EncodeTarget& target, const PackReport& report) {
 
 std::string Extension(const std::string& path) { return std::filesystem::path(path).extension().string(); }
 
+// What was mended or left aside is told to those, too, who see no table.
+void TellNotes(const PackArguments& arguments, const std::vector<std::string>& notes) {
+  if (arguments.tables || arguments.batch.json) return;
+  for (const std::string& note : notes) std::fprintf(stderr, "lacerta: %s: %s\n", arguments.input.c_str(), note.c_str());
+}
+
+// The status of reading or packing the input, with its name and what can be done about it.
+Status AboutInput(const PackArguments& arguments, const Status& status) {
+  const bool may_help = !arguments.repair && status.code() == StatusCode::kInvalidData && status.message().find("finite") != std::string::npos;
+  return (may_help ? InvalidData(status.message() + "; --repair does so") : status).WithContext(arguments.input);
+}
+
 void PrintPackReport(const PackArguments& arguments, const PackReport& report, uint64_t before, uint64_t after) {
   for (const PrimitiveReport& primitive : report.primitives) {
     std::printf("mesh %llu%s%s%s: %s, %llu -> %llu bytes%s%s\n", static_cast<unsigned long long>(primitive.mesh),
@@ -113,11 +126,13 @@ StatusOr<TriangleMesh> ReadSurface(const PackArguments& arguments, std::vector<s
   StatusOr<MeshFormat> format = DetectMeshFormat(path, bytes);
   if (!format.ok()) return format.status().WithContext(path);
   if (format.value() == MeshFormat::kGltf) {
+    if (arguments.repair) return InvalidArgument(path + ": --repair mends glTF assets on their way into a .glb; pack into one");
     StatusOr<TriangleMesh> mesh = ParseMesh(bytes, format.value(), folder);
     return mesh.ok() ? std::move(mesh) : StatusOr<TriangleMesh>(mesh.status().WithContext(path));
   }
-  StatusOr<FileMesh> mesh = ParseFileMesh(bytes, format.value(), folder);
-  if (!mesh.ok()) return mesh.status().WithContext(path);
+  StatusOr<FileMesh> mesh = ParseFileMesh(bytes, format.value(), folder, arguments.repair);
+  if (!mesh.ok()) return AboutInput(arguments, mesh.status());
+  *notes = mesh.value().notes;
   if (!arguments.shape_only) {
     for (const MeshAttribute& attribute : mesh.value().mesh.attributes) {
       notes->push_back(attribute.name + " is left aside: a bare stream holds the shape alone; pack into a .glb to keep it");
@@ -148,6 +163,7 @@ StatusOr<FileOutcome> PackStream(const PackArguments& arguments, const EncodeOpt
     for (const std::string& note : notes) std::printf("note: %s\n", note.c_str());
     if (!report.reason.empty()) std::printf("note: %s\n", report.reason.c_str());
   }
+  TellNotes(arguments, notes);
   if (missed)
     std::fprintf(stderr, "lacerta: %s misses the target: %s\n", arguments.output.c_str(), report.reason.c_str());
   return outcome;
@@ -162,7 +178,7 @@ StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& 
   if (!format.ok()) return format.status();
   if (format.value() == MeshFormat::kGltf) return PackGltf(bytes, options);
   const std::string name = std::filesystem::path(arguments.input).stem().string();
-  LACERTA_ASSIGN_OR_RETURN(FileMesh mesh, ParseFileMesh(bytes, format.value(), options.folder));
+  LACERTA_ASSIGN_OR_RETURN(FileMesh mesh, ParseFileMesh(bytes, format.value(), options.folder, arguments.repair));
   bytes = Bytes();  // large meshes fill the memory
   if (arguments.shape_only) mesh = ShapeOf(std::move(mesh));
   return PackMesh(mesh, name, options);
@@ -189,6 +205,7 @@ StatusOr<FileOutcome> PackAsset(const PackArguments& arguments, const EncodeOpti
   options.encode = encode;
   options.attributes = arguments.attributes;
   options.simplify = !arguments.keep_vertices;
+  options.repair = arguments.repair;
   if (arguments.fallback == "plain") options.fallback = Fallback::kPlain;
   if (arguments.fallback == "none") options.fallback = Fallback::kNone;
   options.folder = std::filesystem::path(arguments.input).parent_path().string();
@@ -196,7 +213,7 @@ StatusOr<FileOutcome> PackAsset(const PackArguments& arguments, const EncodeOpti
   if (arguments.external) options.external_uri = UriOf(external.filename().string());
   FileOutcome outcome;
   const StatusOr<PackResult> packed = PackAny(arguments, options, &outcome.bytes_before);
-  if (!packed.ok()) return packed.status().WithContext(arguments.input);
+  if (!packed.ok()) return AboutInput(arguments, packed.status());
   // The GLB last: where it is, all that it refers to is.
   if (!packed.value().external.empty()) {
     LACERTA_RETURN_IF_ERROR(WriteOutput(external.string(), packed.value().external));
@@ -210,6 +227,7 @@ StatusOr<FileOutcome> PackAsset(const PackArguments& arguments, const EncodeOpti
   if (arguments.external) outcome.json["externalBytes"] = packed.value().external.size();
   outcome.json.update(ToJson(report));
   if (arguments.tables) PrintPackReport(arguments, report, outcome.bytes_before, outcome.bytes_after);
+  TellNotes(arguments, report.notes);
   if (missed)
     std::fprintf(stderr, "lacerta: %s misses the target; see the report for the reason\n", arguments.output.c_str());
   return outcome;
@@ -270,30 +288,30 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
       ->required();
   CLI::Option_group* target = pack->add_option_group("target", "What to aim at (default: --psnr 70)");
   target->add_option("--bytes", arguments->bytes, "At most this many bytes of geometry, within 2 %")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   target->add_option("--bpv", arguments->bits_per_vertex, "At most this many bits per vertex of the input")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   target->add_option("--psnr", arguments->psnr, "At least this PSNR in dB, 20 log10(diagonal / error)")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   target->add_option("--error", arguments->error, "At most this surface error, as a share of the diagonal")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   target->add_option("--distance", arguments->distance, "At most this surface error, in units of the mesh; of an asset, of its scene")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   target->require_option(0, 1);
   pack->add_option("--uv-error", arguments->attributes.uv_texels,
                    "At most this RMS error of texture coordinates, in texels of the asset's largest texture (at least 1024; default: 1)")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   pack->add_option("--custom-error", arguments->attributes.custom,
                    "Error of application attributes of floats, relative to their range (RMS); 0 keeps them exact")
       ->check(CLI::NonNegativeNumber);
   pack->add_option("--normal-error", arguments->attributes.normal_degrees,
                    "At most this RMS error of normals and tangents, in degrees (default: 2); of simplified surfaces over the 99 % of the "
                    "area where it is least")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   pack->add_option_function<double>(
           "--color-error", [arguments](double error) { arguments->attributes.color = error / 255; },
           "At most this RMS error of each component of colors, in 255ths (default: 0.29, as integers of 8 bits have)")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   pack->add_flag("--normals-everywhere", arguments->attributes.normals_everywhere,
                  "Hold the normals of simplified surfaces to --normal-error over their whole area");
   pack->add_option("--fallback", arguments->fallback, "What readers without the extension show (.glb; default: draco)")
@@ -316,6 +334,9 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   pack->add_flag("--keep-vertices", arguments->keep_vertices, "Do not simplify surfaces with attributes, only round them");
   pack->add_flag("--shape-only", arguments->shape_only,
                  "Of .obj and .ply files take the shape alone, without texture coordinates, normals, colors and materials");
+  pack->add_flag("--repair", arguments->repair,
+                 "Mend numbers that are not finite instead of refusing the file, and tell so: vertices without a position go with their triangles, "
+                 "other values follow those beside them");
   AddBatchOptions(pack, &arguments->batch);
   pack->add_flag("--json", arguments->batch.json, "Print a report as JSON");
   pack->footer(kExitCodeHelp);

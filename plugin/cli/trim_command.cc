@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,10 +38,25 @@ StatusOr<TrimResult> TrimStream(const Bytes& stream, const TrimArguments& argume
   return result;
 }
 
-StatusOr<TrimResult> Trim(const Bytes& bytes, MeshFormat format, const std::string& folder,
-                          const TrimArguments& arguments) {
+// An asset without levels is all base: as it is, and so are those of a library whose meshes are all stored without.
+StatusOr<TrimResult> KeepWhole(const Bytes& bytes, const TrimArguments& arguments) {
+  constexpr char kMagic[] = {'g', 'l', 'T', 'F'};
+  if (bytes.size() < sizeof(kMagic) || !std::equal(std::begin(kMagic), std::end(kMagic), bytes.begin())) {
+    return Unsupported("no mesh of it has levels: there is nothing to trim");
+  }
+  TrimResult result;
+  result.glb = bytes;
+  result.meets_bytes = !arguments.bytes.has_value() || bytes.size() <= *arguments.bytes;
+  return result;
+}
+
+StatusOr<TrimResult> Trim(const Bytes& bytes, MeshFormat format, const std::string& folder, const TrimArguments& arguments, bool* has_levels) {
+  *has_levels = true;
   if (format == MeshFormat::kDrc) return TrimStream(bytes, arguments);
   if (format != MeshFormat::kGltf) return Unsupported("is not packed; trim takes .glb, .gltf and .drc");
+  const StatusOr<AssetInfo> info = DescribeGltf(bytes, folder);
+  *has_levels = !info.ok() || !info.value().streams.empty();
+  if (!*has_levels) return KeepWhole(bytes, arguments);
   TrimOptions options;
   options.level = arguments.level;
   options.bytes = arguments.bytes;
@@ -52,14 +69,16 @@ StatusOr<FileOutcome> TrimFile(const TrimArguments& arguments, const BatchItem& 
   const StatusOr<MeshFormat> format = DetectMeshFormat(item.input, bytes);
   if (!format.ok()) return format.status().WithContext(item.input);
   const std::string folder = std::filesystem::path(item.input).parent_path().string();
-  const StatusOr<TrimResult> trimmed = Trim(bytes, format.value(), folder, arguments);
+  bool has_levels = true;
+  const StatusOr<TrimResult> trimmed = Trim(bytes, format.value(), folder, arguments, &has_levels);
   if (!trimmed.ok()) return trimmed.status().WithContext(item.input);
   LACERTA_RETURN_IF_ERROR(WriteOutput(item.output, trimmed.value().glb));
   FileOutcome outcome;
   outcome.exit_code = trimmed.value().meets_bytes ? kExitOk : kExitTargetMissed;
   outcome.bytes_before = bytes.size();
   outcome.bytes_after = trimmed.value().glb.size();
-  outcome.json = {{"bytes", outcome.bytes_after}, {"targetMet", trimmed.value().meets_bytes}};
+  outcome.json = {{"bytes", outcome.bytes_after}, {"targetMet", trimmed.value().meets_bytes}, {"hasLevels", has_levels}};
+  if (!has_levels && !arguments.batch.json) std::fprintf(stderr, "lacerta: %s: no mesh of it has levels; it stays whole\n", item.input.c_str());
   if (!trimmed.value().meets_bytes) {
     std::fprintf(stderr, "lacerta: %s misses the target: without any refinement it has %llu bytes\n",
                  item.output.c_str(), static_cast<unsigned long long>(outcome.bytes_after));
@@ -69,7 +88,7 @@ StatusOr<FileOutcome> TrimFile(const TrimArguments& arguments, const BatchItem& 
 
 StatusOr<std::vector<BatchItem>> Items(const TrimArguments& arguments) {
   LACERTA_ASSIGN_OR_RETURN(const std::vector<std::string> inputs, ExpandInputs(arguments.inputs, {".glb", ".drc"}));
-  return PairOutputs(arguments.inputs, inputs, arguments.output, ".glb");
+  return PairOutputs(arguments.inputs, inputs, arguments.output, "");
 }
 
 int RunTrim(const TrimArguments& arguments) {
@@ -96,7 +115,7 @@ void AddTrimCommand(CLI::App* app, int* exit_code) {
   CLI::Option_group* target = trim->add_option_group("target", "What to keep");
   target->add_option("--level", arguments->level, "Levels up to this one, 0 = base; those above that take no bytes stay")->check(CLI::NonNegativeNumber);
   target->add_option("--bytes", arguments->bytes, "As many refinements as fit into a file of this size")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   target->require_option(1);
   AddBatchOptions(trim, &arguments->batch);
   trim->add_flag("--json", arguments->batch.json, "Print a report as JSON");

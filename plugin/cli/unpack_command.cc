@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "batch.h"
 #include "commands.h"
 #include "exit_code.h"
 #include "lacerta/codec.h"
-#include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
 #include "lacerta/mesh_file.h"
 #include "report.h"
@@ -30,7 +30,12 @@ struct Unpacked {
 };
 
 StatusOr<Unpacked> WriteMesh(const TriangleMesh& mesh, const Vec3d& origin, std::vector<std::string> notes, const std::string& output) {
-  LACERTA_RETURN_IF_ERROR(WriteMeshFile(mesh, output, origin));
+  if (output == "-") {
+    LACERTA_ASSIGN_OR_RETURN(const Bytes glb, FormatPlainGlb(mesh, "", origin));
+    LACERTA_RETURN_IF_ERROR(WriteOutput(output, glb));
+  } else {
+    LACERTA_RETURN_IF_ERROR(WriteMeshFile(mesh, output, origin));
+  }
   return Unpacked{mesh.triangles.size(), std::move(notes)};
 }
 
@@ -38,7 +43,7 @@ StatusOr<Unpacked> UnpackAsset(const Bytes& bytes, const UnpackArguments& argume
   UnpackOptions options;
   options.level = arguments.level;
   options.folder = std::filesystem::path(arguments.input).parent_path().string();
-  if (std::filesystem::path(arguments.output).extension() != ".glb") {
+  if (arguments.output != "-" && std::filesystem::path(arguments.output).extension() != ".glb") {
     LACERTA_ASSIGN_OR_RETURN(FlattenResult flat, FlattenGltf(bytes, options));
     options.origin = FarOrigin(flat.mesh);
     if (options.origin != Vec3d{}) {
@@ -47,7 +52,7 @@ StatusOr<Unpacked> UnpackAsset(const Bytes& bytes, const UnpackArguments& argume
     return WriteMesh(flat.mesh, options.origin, std::move(flat.notes), arguments.output);
   }
   LACERTA_ASSIGN_OR_RETURN(UnpackResult result, UnpackGltf(bytes, options));
-  LACERTA_RETURN_IF_ERROR(WriteFileAtomically(arguments.output, result.glb));
+  LACERTA_RETURN_IF_ERROR(WriteOutput(arguments.output, result.glb));
   return Unpacked{0, std::move(result.notes)};
 }
 
@@ -63,7 +68,7 @@ StatusOr<Unpacked> UnpackStream(const Bytes& bytes, const UnpackArguments& argum
 }
 
 StatusOr<Unpacked> Unpack(const UnpackArguments& arguments) {
-  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(arguments.input));
+  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadInput(arguments.input));
   const StatusOr<MeshFormat> format = DetectMeshFormat(arguments.input, bytes);
   if (!format.ok()) return format.status().WithContext(arguments.input);
   StatusOr<Unpacked> result = Unsupported("is not packed; unpack takes .glb, .gltf and .drc");
@@ -77,7 +82,7 @@ int RunUnpack(const UnpackArguments& arguments) {
   const StatusOr<Unpacked> unpacked = Unpack(arguments);
   if (!unpacked.ok()) return Finish(unpacked.status());
   for (const std::string& note : unpacked.value().notes) std::fprintf(stderr, "lacerta: note: %s\n", note.c_str());
-  if (arguments.json) {
+  if (arguments.json && arguments.output != "-") {
     Json json = {{"output", arguments.output}, {"notes", unpacked.value().notes}};
     if (unpacked.value().triangles > 0) json["triangles"] = unpacked.value().triangles;
     PrintJson(json);
@@ -90,10 +95,10 @@ int RunUnpack(const UnpackArguments& arguments) {
 void AddUnpackCommand(CLI::App* app, int* exit_code) {
   const auto arguments = std::make_shared<UnpackArguments>();
   CLI::App* unpack = app->add_subcommand("unpack", "Turn a packed file into a plain one that every tool reads");
-  unpack->add_option("IN", arguments->input, "A .glb, .gltf or .drc file")->required();
+  unpack->add_option("IN", arguments->input, "A .glb, .gltf or .drc file; - for standard input")->required();
   unpack
       ->add_option("-o,--output", arguments->output,
-                   "A .glb, .ply or .obj file; the latter two hold the shape of the default scene as one mesh")
+                   "A .glb, .ply or .obj file; the latter two hold the shape of the default scene as one mesh; - for a .glb on standard output")
       ->required();
   unpack->add_option("--level", arguments->level, "Level to stop at, 0 = base (default: the finest)")
       ->check(CLI::NonNegativeNumber);

@@ -1,5 +1,5 @@
 // One asset packed, beside stock Draco with the fewest bits that meet the same errors, measured in the same way:
-//   asset_report ORIGINAL.glb PACKED.glb UNPACKED.glb [--psnr DB] [--texels N] [--degrees N]
+//   asset_report ORIGINAL.glb PACKED.glb UNPACKED.glb [--psnr DB] [--texels N] [--degrees N] [--without-stock]
 // Prints one line of JSON. Errors are those of the worst mesh (meshes that touch count as one); UV in texels as the packer counts
 // them: of the asset's largest texture (at least 1024), as often as KHR_texture_transform repeats it.
 #include <draco/compression/expert_encode.h>
@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -35,6 +36,16 @@ struct Errors {
   double psnr = kMaxPsnr, texels = 0.0, degrees = 0.0, turned = 0.0;
 };
 
+std::string FolderOf(const std::string& path) { return std::filesystem::path(path).parent_path().string(); }
+
+StatusOr<TriangleMesh> ReadScene(const std::string& path) {
+  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(path));
+  UnpackOptions options;
+  options.folder = FolderOf(path);
+  LACERTA_ASSIGN_OR_RETURN(FlattenResult scene, FlattenGltf(bytes, options));
+  return std::move(scene.mesh);
+}
+
 struct Asset {
   GltfDocument document;
   std::vector<Place> places;
@@ -45,7 +56,7 @@ struct Asset {
 StatusOr<Asset> Read(const std::string& path) {
   Asset asset;
   LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(path));
-  LACERTA_ASSIGN_OR_RETURN(asset.document, ParseGltf(bytes, ""));
+  LACERTA_ASSIGN_OR_RETURN(asset.document, ParseGltf(bytes, FolderOf(path)));
   for (const Place& place : AllPlaces(asset.document)) {
     StatusOr<Primitive> primitive = ReadPrimitive(asset.document, PrimitiveAt(asset.document, place), {});
     if (!primitive.ok()) continue;
@@ -242,22 +253,29 @@ uint64_t BorderEdges(const TriangleMesh& mesh) {
   return static_cast<uint64_t>(std::count_if(edges.begin(), edges.end(), [](const auto& e) { return e.second == 1; }));
 }
 
-Status Report(const std::vector<std::string>& files, const Errors& wanted) {
+Status Report(const std::vector<std::string>& files, const Errors& wanted, bool with_stock) {
   LACERTA_ASSIGN_OR_RETURN(const Asset original, Read(files[0]));
   LACERTA_ASSIGN_OR_RETURN(const Bytes packed, ReadFile(files[1]));
   LACERTA_ASSIGN_OR_RETURN(const Asset unpacked, Read(files[2]));
   LACERTA_ASSIGN_OR_RETURN(const std::vector<Judge> judges, MakeJudges(original, wanted.psnr));
   LACERTA_ASSIGN_OR_RETURN(const Errors ours, MeasureAll(judges, unpacked.primitives, kSamples));
-  LACERTA_ASSIGN_OR_RETURN(const FlattenResult before, FlattenGltf(ReadFile(files[0]).value(), {}));
-  LACERTA_ASSIGN_OR_RETURN(const FlattenResult after, FlattenGltf(ReadFile(files[2]).value(), {}));
+  const StatusOr<TriangleMesh> scene = ReadScene(files[0]);  // some show no triangles: points, or meshes outside of scenes
+  TriangleMesh before, after;
+  if (scene.ok()) {
+    before = scene.value();
+    LACERTA_ASSIGN_OR_RETURN(after, ReadScene(files[2]));
+  }
 
-  LACERTA_ASSIGN_OR_RETURN(const Stock stock, FewestStock(original.primitives, judges, wanted));
+  Stock stock;  // nothing where Draco refuses
+  if (with_stock) {
+    if (const StatusOr<Stock> found = FewestStock(original.primitives, judges, wanted); found.ok()) stock = found.value();
+  }
   uint64_t vertices = 0;
   for (const Primitive& primitive : original.primitives) vertices += primitive.num_vertices;
   std::printf("{\"vertices\": %llu, \"psnr\": %.2f, \"texels\": %.3f, \"degrees\": %.3f, \"turned\": %.5f, \"borderEdgesBefore\": %llu, \"borderEdgesAfter\": %llu, "
               "\"stockBytes\": %llu, \"stockBits\": [%d, %d, %d], \"stockPsnr\": %.2f, \"stockTexels\": %.3f, \"stockDegrees\": %.3f}\n",
               static_cast<unsigned long long>(vertices), ours.psnr, ours.texels, ours.degrees, ours.turned,
-              static_cast<unsigned long long>(BorderEdges(before.mesh)), static_cast<unsigned long long>(BorderEdges(after.mesh)),
+              static_cast<unsigned long long>(BorderEdges(before)), static_cast<unsigned long long>(BorderEdges(after)),
               static_cast<unsigned long long>(stock.bytes + original.target_bytes), stock.bits[0], stock.bits[1], stock.bits[2], stock.errors.psnr, stock.errors.texels, stock.errors.degrees);
   return Status();
 }
@@ -268,23 +286,26 @@ Status Report(const std::vector<std::string>& files, const Errors& wanted) {
 int main(int argc, char** argv) {
   lacerta::Errors wanted{70.0, 1.0, 2.0};
   std::vector<std::string> files;
+  bool with_stock = true;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     double* number = argument == "--psnr"      ? &wanted.psnr
                      : argument == "--texels"  ? &wanted.texels
                      : argument == "--degrees" ? &wanted.degrees
                                                : nullptr;
-    if (number != nullptr && i + 1 < argc) {
+    if (argument == "--without-stock") {
+      with_stock = false;
+    } else if (number != nullptr && i + 1 < argc) {
       *number = std::atof(argv[++i]);
     } else {
       files.push_back(argument);
     }
   }
   if (files.size() != 3) {
-    std::fprintf(stderr, "usage: asset_report ORIGINAL PACKED UNPACKED [--psnr DB] [--texels N] [--degrees N]\n");
+    std::fprintf(stderr, "usage: asset_report ORIGINAL PACKED UNPACKED [--psnr DB] [--texels N] [--degrees N] [--without-stock]\n");
     return 1;
   }
-  const lacerta::Status status = lacerta::Report(files, wanted);
+  const lacerta::Status status = lacerta::Report(files, wanted, with_stock);
   if (!status.ok()) std::fprintf(stderr, "%s: %s\n", files[0].c_str(), status.message().c_str());
   return status.ok() ? 0 : 1;
 }

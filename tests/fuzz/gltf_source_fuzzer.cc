@@ -7,6 +7,7 @@
 #include "fuzz/fuzz_input.h"
 #include "fuzz/strange_asset.h"
 #include "lacerta/gltf.h"
+#include "pack/repair.h"
 #include "pack/source.h"
 
 namespace {
@@ -46,6 +47,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (!document.ok()) {
     FUZZ_CHECK(!document.status().message().empty());
     return 0;
+  }
+  lacerta::GltfDocument mended = document.value();
+  const auto notes = RepairDocument(&mended);
+  if (notes.ok()) {  // nothing is left to be mended, and what was read before still is
+    FUZZ_CHECK(RepairDocument(&mended).ok() && RepairDocument(&mended).value().empty());
+    FUZZ_CHECK(ReadSources(mended).ok() || !ReadSources(document.value()).ok());
   }
   const auto sources = ReadSources(document.value());
   if (!sources.ok()) return 0;

@@ -15,6 +15,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto mesh = lacerta::ParseMesh({data + 1, size - 1}, format);
   const auto file = lacerta::ParseFileMesh({data + 1, size - 1}, format, "no-such-folder");
   FUZZ_CHECK(file.ok() == mesh.ok());
+  const auto repaired = lacerta::ParseFileMesh({data + 1, size - 1}, format, "no-such-folder", true);
+  FUZZ_CHECK(repaired.ok() || !mesh.ok());
+  if (repaired.ok()) {
+    FUZZ_CHECK(!repaired.value().mesh.surface.triangles.empty() && lacerta::CheckAttributedMesh(repaired.value().mesh).ok());
+    FUZZ_CHECK(repaired.value().mesh.groups.size() == repaired.value().mesh.surface.triangles.size());
+  }
   if (!mesh.ok()) {
     FUZZ_CHECK(!mesh.status().message().empty());
     return 0;

@@ -55,6 +55,9 @@ struct PackOptions {
   // the animations and of turned joints, too, with morph targets at weight 1 of each.
   bool simplify = true;
   Fallback fallback = Fallback::kDraco;
+  // Of a glTF asset: numbers that are not finite are mended, each primitive with a note in the report, instead of refused. Vertices
+  // without a finite position go with their triangles; other values follow those beside them.
+  bool repair = false;
   std::string folder;  // where the external buffers of a .gltf are
   // Not empty: refinements go into a file of their own, which the GLB refers to by this relative URI.
   std::string external_uri;

@@ -40,7 +40,8 @@ Vec3d FarOrigin(const TriangleMesh& mesh);
 // The same with what .obj and .ply files lay on the surface: texture coordinates, normals, colors; of .obj the materials of .mtl files and
 // their textures, of .ply the textures of `comment TextureFile`, all read from `folder` and nowhere else (empty: the working directory). What
 // cannot be used is left aside with a note, and never in the way of the surface. Positions are relative to their FarOrigin. Other formats: the surface alone. kGltf is not for here.
-StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder);
+// `repair`: triangles of vertices that have no finite position are taken off, with a note, instead of being refused.
+StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, bool repair = false);
 
 // Reads a file of any of the formats above. Messages begin with `path`. Fails with kNotFound or kIoError besides what
 // ParseMesh returns.

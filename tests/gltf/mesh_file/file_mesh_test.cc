@@ -85,6 +85,31 @@ TEST(FileMesh, WhatCannotBeUsedIsLeftAsideWithANoteAndTheSurfaceStays) {
   EXPECT_THAT(Obj(std::string(kSquare) + "vt nan nan\nvn 0 x 0\n" + faces).notes, IsEmpty());
 }
 
+// Refused without being asked to; then the triangles of the vertex go, and a normal that is none is the surface's.
+TEST(FileMesh, WhatIsNotFiniteIsRepairedWhereAskedFor) {
+  const std::string obj = std::string(kSquare) + "v nan 0 0\nvn nan 0 1\nf 1/1/1 2/2/3 3/3/1\nf 1/1/1 5/2/1 3/3/1\nf 1/1/1 3/3/1 4/4/1\n";
+  EXPECT_THAT(ParseFileMesh(FromText(obj), MeshFormat::kObj, "").status().message(), HasSubstr("vertex 4"));
+  const FileMesh file = ParseFileMesh(FromText(obj), MeshFormat::kObj, "", true).value();
+  EXPECT_TRUE(CheckAttributedMesh(file.mesh).ok());
+  EXPECT_THAT(file.mesh.surface.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+  EXPECT_THAT(Names(file), ElementsAre("TEXCOORD_0", "NORMAL"));
+  EXPECT_THAT(At(file, 0, 1, 2), ElementsAre(0, 0));  // of the third face, which is the second now
+  EXPECT_THAT(At(file, 1, 0, 1), ElementsAre(0, 0, 1));
+  EXPECT_THAT(file.notes, ElementsAre(HasSubstr("repaired: 1 vertices without a finite position removed with 1 triangles"),
+                                      HasSubstr("repaired: 1 normals")));
+  EXPECT_EQ(ShapeOf(file).notes.size(), 2u);
+
+  const std::string body = "4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 inf 0\n3 0 1 2\n3 0 2 3\n", off = "OFF\n" + body;
+  EXPECT_FALSE(ParseFileMesh(FromText(off), MeshFormat::kOff, "").ok());
+  EXPECT_EQ(ParseFileMesh(FromText(off), MeshFormat::kOff, "", true).value().mesh.surface.triangles.size(), 1u);
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
+                          "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 nan 0\n3 0 1 2\n3 0 2 3\n";
+  EXPECT_FALSE(ParseFileMesh(FromText(ply), MeshFormat::kPly, "").ok());
+  EXPECT_EQ(ParseFileMesh(FromText(ply), MeshFormat::kPly, "", true).value().mesh.surface.triangles.size(), 1u);
+  const std::string lost = "OFF\n3 1 0\n0 0 0\n1 0 0\n1 nan 0\n3 0 1 2\n";
+  EXPECT_THAT(ParseFileMesh(FromText(lost), MeshFormat::kOff, "", true).status().message(), HasSubstr("no triangle with finite positions"));
+}
+
 TEST(FileMesh, ColorsAreMadeLinear) {
   const FileMesh obj = Obj("v 0 0 0 0 0.5 1\nv 1 0 0 0 0.5 1\nv 0 1 0 1 0 1\nf 1 2 3\n");
   const FileMesh bytes = Obj("v 0 0 0 0 127.5 255\nv 1 0 0 0 127.5 255\nv 0 1 0 255 0 255\nf 1 2 3\n");

@@ -106,7 +106,10 @@ TEST_P(AssetTest, KeepsEverythingElseAndOpensNoCrack) {
   EXPECT_LE(border.size(), old_border.size());
   // Nor does any lie where the original had none: a crack inside of the surface, closed elsewhere.
   constexpr double kNear = 0.01;  // of the diagonal
-  const double diagonal = SurfaceDistanceMeter::Create(original).value().diagonal();
+  const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(original).value();
+  const double diagonal = meter.diagonal();
+  // Measured anew, of all that the scene shows; tests/bench/asset_report looks at each mesh and what lies on it.
+  EXPECT_GT(Psnr(meter.Measure(decoded, SurfaceDistanceOptions::RmsOnly()).value().Rms(), diagonal), 69.9);
   // Simplifying the truck leaves one edge of 0.23 units with a single triangle: known, not understood yet.
   const double known = std::string(GetParam()) == "CesiumMilkTruck" ? 0.24 : 0;
   EXPECT_LE(LengthFarFrom(border, old_border, kNear * diagonal), known + 1e-3 * LengthOf(old_border));

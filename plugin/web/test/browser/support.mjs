@@ -65,23 +65,25 @@ export async function texturedAsset(name) {
   return {path, imageBytes: image.length};
 }
 
-/** {page, base, close} with the viewer open and nothing loaded. */
-export async function openViewer({width = 640, height = 480} = {}) {
-  const server = await serve([['/assets/', scratch], ...viewerRoots.slice(1)]);
+/** {page, base, server, errors, close} of Chromium at an address of a server of `roots`, when window.ready is set there. */
+export async function openPage(address, roots, {width = 640, height = 480} = {}) {
+  const server = await serve(roots);
   const base = `http://127.0.0.1:${server.address().port}`;
   const browser = await chromium.launch({executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: flags});
   const page = await browser.newPage({viewport: {width, height}});
   const errors = [];
   page.on('pageerror', error => errors.push(error.message));
-  await page.goto(`${base}/?idle`);
+  await page.goto(base + address);
   await page.waitForFunction('window.ready');
-  // Decoders and shaders are warm, as on the second page of a site: the link is what is measured.
   return {page, base, server, errors, close: async () => {
     await browser.close();
     server.closeAllConnections();
     server.close();
   }};
 }
+
+/** The viewer open with nothing loaded; decoders and shaders are warm, as on the second page of a site: the link is what is measured. */
+export const openViewer = size => openPage('/?idle', [['/assets/', scratch], ...viewerRoots.slice(1)], size);
 
 /** Loads in the page and waits until the last level is shown, or a problem is. Resolves to the history of levels. */
 export async function loadWhole(page, url, mode = 'stream') {
