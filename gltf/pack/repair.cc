@@ -111,13 +111,23 @@ Neighbors FindNeighbors(const Primitive& primitive) {
 // From those that have a value outwards, ring by ring; 0 where none of a component has any.
 void FillFromNeighbors(const Primitive& primitive, std::vector<uint8_t> known, AccessorData* data) {
   const Neighbors neighbors = FindNeighbors(primitive);
-  std::vector<uint32_t> missing;
-  for (size_t v = 0; v < known.size(); ++v) {
-    if (known[v] == 0) missing.push_back(static_cast<uint32_t>(v));
+  std::vector<uint8_t> is_due(known.size());  // in the next ring, or one before
+  std::vector<uint32_t> ring, next;
+  const auto add_around = [&](uint32_t v) {
+    for (size_t n = neighbors.begins[v]; n < neighbors.begins[v + 1]; ++n) {
+      const uint32_t neighbor = neighbors.vertices[n];
+      if (known[neighbor] != 0 || is_due[neighbor] != 0) continue;
+      is_due[neighbor] = 1;
+      next.push_back(neighbor);
+    }
+  };
+  for (uint32_t v = 0; v < known.size(); ++v) {
+    if (known[v] != 0) add_around(v);
   }
-  while (!missing.empty()) {
-    std::vector<uint32_t> filled, left;
-    for (const uint32_t v : missing) {
+  while (!next.empty()) {
+    ring.swap(next);
+    next.clear();
+    for (const uint32_t v : ring) {
       double sums[4] = {};
       double count = 0;
       for (size_t n = neighbors.begins[v]; n < neighbors.begins[v + 1]; ++n) {
@@ -126,12 +136,13 @@ void FillFromNeighbors(const Primitive& primitive, std::vector<uint8_t> known, A
         for (uint32_t c = 0; c < data->components; ++c) sums[c] += data->Float(neighbor, c);
         ++count;
       }
-      for (uint32_t c = 0; c < data->components; ++c) Set(v, c, count > 0 ? static_cast<float>(sums[c] / count) : 0.0f, data);
-      (count > 0 ? filled : left).push_back(v);
+      for (uint32_t c = 0; c < data->components; ++c) Set(v, c, static_cast<float>(sums[c] / count), data);
     }
-    if (filled.empty()) return;
-    for (const uint32_t v : filled) known[v] = 1;
-    missing = std::move(left);
+    for (const uint32_t v : ring) known[v] = 1;
+    for (const uint32_t v : ring) add_around(v);
+  }
+  for (uint32_t v = 0; v < known.size(); ++v) {
+    for (uint32_t c = 0; c < data->components && known[v] == 0; ++c) Set(v, c, 0.0f, data);
   }
 }
 
