@@ -8,7 +8,7 @@
 #   validate  Node.js for the glTF validator
 #   batch     GNU parallel and Snakemake, to try the recipes of samples/batch
 #   web       emscripten and Node.js for plugin/web, Chromium for its browser tests
-#   lint      clang-format and clang-tidy
+#   lint      clang-format, clang-tidy and cppcheck
 # Does nothing, without asking for root, when nothing is missing. Ends with 0 when all packages are there. These lists are
 # the only ones in the repository.
 set -euo pipefail
@@ -24,7 +24,7 @@ packages_of() {
     validate) echo nodejs npm ;;
     batch) echo parallel snakemake ;;
     web) echo emscripten chromium; command -v npm >/dev/null || echo nodejs npm ;;
-    lint) echo clang-format-14 clang-tidy-14 ;;
+    lint) echo clang-format-14 clang-tidy-14 cppcheck ;;
     *) echo "unknown package set '$1'; $0 knows build, demo, picture, plot, fuzz, validate, batch, web, lint" >&2; return 2 ;;
   esac
 }
