@@ -134,6 +134,8 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
       corners_[slot] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
     }
   });
+  references = {};
+  nodes_.shrink_to_fit();
 }
 
 namespace {
