@@ -9,7 +9,7 @@
 #   models    files made to test importers of glTF, for tests/bench/asset_table --models
 #   batch     GNU parallel and Snakemake, to try the recipes of samples/batch
 #   web       emscripten and Node.js for plugin/web, Chromium for its browser tests
-#   lint      clang-format and clang-tidy
+#   lint      clang-format, clang-tidy and cppcheck
 # Does nothing, without asking for root, when nothing is missing. Ends with 0 when all packages are there. These lists are
 # the only ones in the repository.
 set -euo pipefail
@@ -26,7 +26,7 @@ packages_of() {
     models) echo assimp-testmodels ;;
     batch) echo parallel snakemake ;;
     web) echo emscripten chromium; command -v npm >/dev/null || echo nodejs npm ;;
-    lint) echo clang-format-14 clang-tidy-14 ;;
+    lint) echo clang-format-14 clang-tidy-14 cppcheck ;;
     *) echo "unknown package set '$1'; $0 knows build, demo, picture, plot, fuzz, validate, models, batch, web, lint" >&2; return 2 ;;
   esac
 }

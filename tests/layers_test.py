@@ -10,7 +10,7 @@ LAYERS = ["common", "decoder", "geometry", "remesh", "encoder", "draco", "gltf",
 # The layers that may include a third-party library. Whatever is not listed, nobody may.
 LIBRARIES = {
     "Eigen": {"geometry", "remesh", "encoder"},
-    "tbb": {"geometry", "remesh", "encoder", "draco"},
+    "tbb": {"geometry", "remesh", "encoder", "draco", "plugin"},
     "draco": {"draco", "gltf"},
     "nlohmann": {"gltf", "plugin"},
     "meshoptimizer.h": {"gltf"},
@@ -18,6 +18,7 @@ LIBRARIES = {
     "CLI": {"plugin"},
     "lacerta.h": {"plugin", "samples"},
     "unistd.h": {"plugin"},
+    "sys": {"plugin"},
 }
 
 # The layer that an installed header belongs to. decoder.h and attributed_*.h are with `common`: they hold what both sides share, the base

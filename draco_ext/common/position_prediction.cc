@@ -134,7 +134,7 @@ void PositionPredictor::UseFlap(uint32_t edge, uint32_t newest) {
     coefficient[static_cast<size_t>(end)] = t - 512;
     int64_t squares = 0;
     for (const int64_t x : coefficient) squares += x * x;
-    const int64_t weight = (int64_t{1} << 24) / squares;
+    const int64_t weight = (int64_t{1} << 24) / squares;  // NOLINT(clang-analyzer-core.DivideZero): 256 is among them
     const int64_t mine = coefficient[unknown];
     for (size_t c = 0; c < 3; ++c) {
       int64_t rest = 0;

@@ -323,6 +323,7 @@ StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std
 StatusOr<VertexSoup> DecodeAttributedGroup(Span<const uint8_t> stream, const std::vector<AttributeLattice>& precision,
                                            const DecodeLimits& limits, const JointTable& joints) {
   std::vector<std::string> names;
+  names.reserve(precision.size());
   for (const AttributeLattice& p : precision) names.push_back(p.name);
   LACERTA_ASSIGN_OR_RETURN(VertexSoup soup, DecodeAttributedGroup(stream, names, limits, joints));
   for (VertexSoup::Attribute& attribute : soup.attributes) {

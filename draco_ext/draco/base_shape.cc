@@ -49,6 +49,7 @@ std::vector<CollapseHistory> ShapedHistories(const InputSurface& surface, const 
     made[h].emplace(Decimate(surface.mesh(), topology, options));
   });
   std::vector<CollapseHistory> histories;
+  histories.reserve(made.size());
   for (std::optional<CollapseHistory>& history : made) histories.push_back(*std::move(history));
   return histories;
 }

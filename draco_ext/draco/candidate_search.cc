@@ -297,7 +297,7 @@ StatusOr<MeasuredStream> CandidateSearch::MeetQuality(Attempt drawn) {
   std::optional<Attempt> unmeasured;
   for (int i = 0; i < kEstimatedTries && !(is_done() && excess(*best) <= kPsnrNear) && !CannotReach() && measurements_ < kMostMeasurements; ++i) {
     if (i > 0) attempt = Settle(from);
-    if (!attempt.ok()) break;
+    if (!attempt.ok()) break;  // NOLINT(bugprone-use-after-move): of the last round; this one has its own
     const double log_lambda = attempt.value().log_lambda, estimate = EstimatePsnr(attempt.value().stream);
     if (rank(attempt.value()) < 2) {  // by the estimate
       unmeasured = std::move(attempt).value();

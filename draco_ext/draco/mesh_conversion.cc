@@ -107,7 +107,7 @@ StatusOr<TriangleMesh> FromDracoMesh(const draco::Mesh& mesh) {
     return InvalidData("Draco mesh has no POSITION attribute of three components");
   }
   const Reader read = PositionReader(positions->data_type());
-  if (read == nullptr || positions->byte_stride() < 3 * draco::DataTypeLength(positions->data_type())) {
+  if (read == nullptr || positions->byte_stride() < int64_t{3} * draco::DataTypeLength(positions->data_type())) {
     return InvalidData("POSITION attribute of the Draco mesh has the unknown type " +
                        std::to_string(static_cast<int>(positions->data_type())));
   }

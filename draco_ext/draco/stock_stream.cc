@@ -122,7 +122,7 @@ Status SetQuantizationGrid(const QuantizationGrid& grid, Bytes* stream) {
   uint8_t* const written = stream->data() + stream->size() - kGridSize;
   const int bits = written[kGridSize - 1];
   const std::array<float, 4> expected = {0.0f, 0.0f, 0.0f, static_cast<float>((int64_t{1} << (bits & 31)) - 1)};
-  if (std::memcmp(written, expected.data(), sizeof(expected)) != 0) {
+  if (std::memcmp(written, expected.data(), sizeof(expected)) != 0) {  // NOLINT(bugprone-suspicious-memory-comparison): the bytes are meant
     return InternalError("Draco stream does not end with its quantization grid");
   }
   const std::array<float, 4> wanted = {grid.origin.x, grid.origin.y, grid.origin.z, grid.range};

@@ -81,10 +81,10 @@ class ZeroLevelSearch {
     };
     while (is_to_grow()) {
       LACERTA_RETURN_IF_ERROR(Grow(Square(stream.distance)));
-      const int measurements = stream.measurements;
       LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream larger, FinishTrial(tried_.at(best_)));
+      const int measurements = stream.measurements + larger.measurements;
       if (IsBetter(OutcomeOf(larger), OutcomeOf(stream), target_)) stream = std::move(larger);
-      stream.measurements = measurements + larger.measurements;
+      stream.measurements = measurements;
     }
     return stream;
   }

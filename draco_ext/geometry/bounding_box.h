@@ -13,15 +13,18 @@ struct BoundingBox {
   Vec3f low, high;
 };
 
+// Makes the box hold p as well.
+inline void Extend(const Vec3f& p, BoundingBox* box) {
+  for (int c = 0; c < 3; ++c) {
+    box->low[c] = std::min(box->low[c], p[c]);
+    box->high[c] = std::max(box->high[c], p[c]);
+  }
+}
+
 // points: at least one, finite.
 inline BoundingBox BoundsOf(const std::vector<Vec3f>& points) {
   BoundingBox box{points[0], points[0]};
-  for (const Vec3f& p : points) {
-    for (int c = 0; c < 3; ++c) {
-      box.low[c] = std::min(box.low[c], p[c]);
-      box.high[c] = std::max(box.high[c], p[c]);
-    }
-  }
+  for (const Vec3f& p : points) Extend(p, &box);
   return box;
 }
 

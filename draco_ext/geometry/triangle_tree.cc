@@ -123,14 +123,15 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   const uint32_t group_size = in_groups ? kGroupSize : 1;
   nodes_.reserve(in_groups ? 2 * references.size() : references.size() / 2 + 1);
   BuildNode({mesh, references.data(), in_groups}, references.data(), references.data() + references.size(), 0, &nodes_);
-  corners_.resize(references.size() * group_size);
-  faces_.resize(corners_.size());
+  faces_.resize(references.size() * group_size);
+  for (uint32_t slot = 0; slot < faces_.size(); ++slot) faces_[slot] = references[slot / group_size].face + slot % group_size;
+  references = {};  // before the corners come: both are large
+  nodes_.shrink_to_fit();
+  corners_.resize(faces_.size());
   tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(faces_.size()), kParallelSize), [&](const tbb::blocked_range<uint32_t>& range) {
     for (uint32_t slot = range.begin(); slot != range.end(); ++slot) {
-      const uint32_t f = references[slot / group_size].face + slot % group_size;
-      const Triangle& t = mesh.triangles[f];
-      slots_[f] = slot;
-      faces_[slot] = f;
+      const Triangle& t = mesh.triangles[faces_[slot]];
+      slots_[faces_[slot]] = slot;
       corners_[slot] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
     }
   });

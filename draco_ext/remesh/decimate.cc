@@ -176,7 +176,7 @@ std::vector<Vec2d> FlattenFan(const Vec3d& center, const Fan& fan, const std::ve
     scale = std::max(scale, radius[i]);
   }
   for (int i = 0; i < num_faces; ++i) {
-    const Vec3d a = positions[fan.ring[i]] - center, b = positions[fan.ring[(i + 1) % k]] - center;
+    const Vec3d a = positions[fan.ring[i]] - center, b = positions[fan.ring[(i + 1) % k]] - center;  // NOLINT(clang-analyzer-core.DivideZero): fans have neighbors
     angle[i] = std::max(std::atan2(Norm(Cross(a, b)), Dot(a, b)), 1e-4);
     total += angle[i];
   }

@@ -33,11 +33,8 @@ void CutIntoParts(const TriangleMesh& surface, Faces faces, size_t most, std::ve
     parts->push_back(std::move(faces));
     return;
   }
-  std::vector<Vec3f> middles;
-  middles.reserve(faces.size());
-  for (const uint32_t f : faces) middles.push_back(SumOfCorners(surface, f));
-  const BoundingBox box = BoundsOf(middles);
-  middles = {};
+  BoundingBox box{SumOfCorners(surface, faces[0]), SumOfCorners(surface, faces[0])};
+  for (const uint32_t f : faces) Extend(SumOfCorners(surface, f), &box);
   const Vec3f sides = box.high - box.low;
   const int axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
   const auto middle = faces.begin() + static_cast<std::ptrdiff_t>(faces.size() / 2);

@@ -242,6 +242,7 @@ Unsubdivided Reorder(const Unsubdivided& mesh, const std::vector<uint32_t>& vert
   }
   midpoints.Sort();
   std::vector<uint32_t> input_vertex;
+  input_vertex.reserve(vertex_map.size());
   for (const uint32_t v : vertex_map) input_vertex.push_back(mesh.input_vertex[v]);
   Topology base = BuildTopology(mesh.num_base_vertices, base_triangles).value();
   NumberedLevels levels = NumberLevels(std::move(base), std::move(input_vertex), mesh.num_levels, midpoints).value();

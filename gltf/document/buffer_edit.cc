@@ -48,7 +48,7 @@ bool MayRenumberViews(const GltfDocument& document) {
 
 const char* TypeName(uint32_t components) {
   constexpr const char* kNames[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
-  return kNames[components - 1];
+  return kNames[components - 1];  // NOLINT(clang-analyzer-core.uninitialized.UndefReturn): attributes have one to four
 }
 
 void AddBounds(const AccessorData& data, Json* accessor) {

@@ -137,6 +137,7 @@ const Attribute* Primitive::Find(const std::string& name) const {
 
 std::vector<const Primitive*> PointersTo(const std::vector<Primitive>& primitives) {
   std::vector<const Primitive*> pointers;
+  pointers.reserve(primitives.size());
   for (const Primitive& primitive : primitives) pointers.push_back(&primitive);
   return pointers;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -38,7 +39,8 @@ std::string Trouble(MeshAttribute* attribute) {
 bool IsUsed(const MeshAttribute& attribute) { return std::any_of(attribute.corners.begin(), attribute.corners.end(), HasAll); }
 
 Vec3f NormalAt(const MeshAttribute& normals, uint32_t row) {
-  return {normals.values[3 * row], normals.values[3 * row + 1], normals.values[3 * row + 2]};
+  const float* const n = &normals.values[size_t{3} * row];
+  return {n[0], n[1], n[2]};
 }
 
 // glTF wants unit vectors. Writers leave zeros where they could not tell.
@@ -74,7 +76,7 @@ void MakeLinear(MeshAttribute* colors) {
   for (uint32_t row = 0; row < colors->num_values() && is_opaque; ++row) is_opaque = colors->values[4 * row + 3] >= 1;
   const uint32_t kept = is_opaque ? 3 : components;
   std::vector<float> values;
-  values.reserve(colors->num_values() * kept);
+  values.reserve(size_t{kept} * colors->num_values());
   for (uint32_t row = 0; row < colors->num_values(); ++row) {
     for (uint32_t c = 0; c < kept; ++c) {
       const float value = colors->values[row * components + c];
@@ -116,7 +118,7 @@ void LeaveOutColorsBelowTextures(const std::vector<uint32_t>& triangle_materials
 
 // The value that all faces have; empty where they do not.
 std::vector<float> TheOnlyValue(const MeshAttribute& attribute) {
-  const auto at = [&](uint32_t row) { return attribute.values.begin() + row * attribute.components; };
+  const auto at = [&](uint32_t row) { return attribute.values.begin() + static_cast<std::ptrdiff_t>(size_t{row} * attribute.components); };
   const uint32_t first = attribute.corners[0][0];
   for (const Triangle& corners : attribute.corners) {
     for (const uint32_t row : corners) {

@@ -152,6 +152,7 @@ StatusOr<Families> FindFamilies(const GltfDocument& document, const std::vector<
     for (const Place& place : *surfaces[s].places) surfaces_of_mesh[static_cast<size_t>(place.mesh)].push_back(s);
   }
   std::vector<double> areas;
+  areas.reserve(surfaces.size());
   for (const PlacedSurface& placed : surfaces) areas.push_back(AreaOf(placed.surface));
   Box scene;
   for (const Instance& instance : instances) {

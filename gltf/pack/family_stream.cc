@@ -147,7 +147,7 @@ StatusOr<FamilyStream> StreamFamily(const FamilyMeter& family, Effort effort, si
     LACERTA_ASSIGN_OR_RETURN(weighted, ToWeightedFamily(family));
   }
   // The family's own surface has no joints' weights.
-  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh surface, PlainNames(weighted ? std::move(weighted->original) : family.simplifiable()));
+  LACERTA_ASSIGN_OR_RETURN(const AttributedMesh surface, PlainNames(weighted ? weighted->original : family.simplifiable()));
   LACERTA_ASSIGN_OR_RETURN(const SurfaceErrorMeter meter, weighted ? SurfaceErrorMeter::Create(surface, family.meter().texture_size())
                                                                    : StatusOr<SurfaceErrorMeter>(family.meter().WithNames(NamesOf(surface))));
   AttributedSearchOptions search;

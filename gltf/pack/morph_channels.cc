@@ -93,7 +93,7 @@ AttributedMesh DirectionsApart(const AttributedMesh& mesh) {
     for (uint32_t t = 0; t < attribute.components / 3; ++t) {
       MeshAttribute one{attribute.name + "/" + std::to_string(t), attribute.kind, 3, {}, attribute.corners};
       for (size_t row = 0; row < attribute.num_values(); ++row) {
-        const auto first = attribute.values.begin() + static_cast<std::ptrdiff_t>(row * attribute.components + 3 * t);
+        const auto first = attribute.values.begin() + static_cast<std::ptrdiff_t>(row * attribute.components + size_t{3} * t);
         one.values.insert(one.values.end(), first, first + 3);
       }
       result.attributes.push_back(std::move(one));

@@ -103,6 +103,7 @@ class TriedFamily {
     }
     const double bytes = ExpectedBytes(curve_, step);
     const RatePoint* nearest = below == nullptr || (above != nullptr && above->step - step < step - below->step) ? above : below;
+    // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): a curve knows a point from the start
     const size_t distance = std::max(nearest->step, step) - std::min(nearest->step, step);
     constexpr size_t kFar = 4;  // steps
     if (std::fabs(bytes - nearest->bytes) < worthwhile && (bytes < worthwhile || distance < kFar)) return std::nullopt;
@@ -134,6 +135,7 @@ class TriedFamily {
 
 std::vector<RateCurve> CurvesOf(const std::vector<TriedFamily>& families) {
   std::vector<RateCurve> curves;
+  curves.reserve(families.size());
   for (const TriedFamily& family : families) curves.push_back(family.curve());
   return curves;
 }

@@ -64,6 +64,7 @@ void Fill(const std::vector<std::vector<Option>>& parts, double budget, std::vec
 std::vector<Option> Solve(const std::vector<std::vector<Option>>& parts, double budget) {
   constexpr int kSteps = 60;  // over 40 powers of ten
   std::vector<Option> least;
+  least.reserve(parts.size());
   for (const std::vector<Option>& options : parts) {
     least.push_back(*std::min_element(options.begin(), options.end(), [](const Option& a, const Option& b) {
       return a.bytes != b.bytes ? a.bytes < b.bytes : a.error < b.error;

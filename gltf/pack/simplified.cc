@@ -88,6 +88,7 @@ StatusOr<std::vector<Primitive>> Split(const AttributedMesh& mesh, const FamilyM
     primitives.push_back(std::move(primitive));
   }
   std::vector<Primitive*> pointers;
+  pointers.reserve(primitives.size());
   for (Primitive& primitive : primitives) pointers.push_back(&primitive);
   ArrangeInfluences(std::move(pointers));
   return primitives;

@@ -15,6 +15,7 @@ namespace {
 std::vector<uint64_t> LevelsOf(const std::vector<Segment>& segments, size_t num_streams) {
   std::vector<uint64_t> next(num_streams, 0);
   std::vector<uint64_t> levels;
+  levels.reserve(segments.size());
   for (const Segment& segment : segments) levels.push_back(next[static_cast<size_t>(segment.stream)]++);
   return levels;
 }

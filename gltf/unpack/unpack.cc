@@ -87,6 +87,7 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
   const StatusOr<Progressive> progressive = ParseProgressive(document);
   const std::vector<std::vector<Place>> groups = GroupByGeometry(document);
   std::vector<Place> geometries;
+  geometries.reserve(groups.size());
   for (const std::vector<Place>& places : groups) geometries.push_back(places[0]);
   std::set<uint64_t> unused_views = DracoViews(document);
   if (progressive.ok()) {

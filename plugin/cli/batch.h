@@ -39,7 +39,7 @@ StatusOr<std::vector<BatchItem>> PairOutputs(const std::vector<std::string>& pat
                                              const std::string& extension);
 
 // What became of one file.
-struct FileOutcome {
+struct FileOutcome {  // NOLINT(bugprone-exception-escape): Json moves without
   int exit_code = 0;
   Status status;  // why there is no output; its message begins with the input
   uint64_t bytes_before = 0;

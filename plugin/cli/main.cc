@@ -4,7 +4,7 @@
 #include "commands.h"
 #include "exit_code.h"
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): options that cannot be added are a mistake in here
   using namespace lacerta::cli;
   CLI::App app("Progressive, Draco-compatible compression of triangle meshes.", "lacerta");
   app.require_subcommand(1);

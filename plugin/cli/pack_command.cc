@@ -1,4 +1,5 @@
 #include <cctype>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
 #include "lacerta/mesh_file.h"
+#include "memory_budget.h"
 #include "progress.h"
 #include "report.h"
 
@@ -35,6 +37,7 @@ struct PackArguments {
   std::string levels = "any";
   std::string effort = "normal";
   int quality_layers = 1;
+  uint64_t memory = 0;  // bytes; 0: what is free
   bool external = false;
   bool keep_vertices = false;
   bool shape_only = false;
@@ -260,6 +263,7 @@ int RunPack(PackArguments arguments) {
   if (!items.ok()) return Finish(items.status());
   const bool single = items.value().size() == 1;
   arguments.tables = single && !arguments.batch.json && items.value()[0].output != "-" && StdoutIsTerminal();
+  if (const uint64_t memory = arguments.memory != 0 ? arguments.memory : FreeMemory().value_or(0); memory != 0) HoldToMemory(memory);
   ProgressLine progress;
   EncodeOptions options;
   options.target = Target(arguments);
@@ -337,6 +341,8 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   pack->add_flag("--repair", arguments->repair,
                  "Mend numbers that are not finite instead of refusing the file, and tell so: vertices without a position go with their triangles, "
                  "other values follow those beside them");
+  pack->add_option("--memory", arguments->memory, "At most this much memory, such as 800M or 12G (default: what is free); what needs more fails by name")
+      ->transform(CLI::AsSizeValue(false));
   AddBatchOptions(pack, &arguments->batch);
   pack->add_flag("--json", arguments->batch.json, "Print a report as JSON");
   pack->footer(kExitCodeHelp);

@@ -1,13 +1,24 @@
 // Speed and memory of decoding on one thread, beside stock Draco: decode_bench [--benchmark_...] [FILE...]
 //
-// A .drc file is a stream of ours: "whole" is DecodeMesh, "base" what comes before the first level is shown, "levels" ProgressiveDecoder
-// on a base at hand, without triangles. A mesh file is coded by Draco at speed 0 with 12 bits first: "draco" decodes that. Without files,
-// a bumpy torus is packed and decoded. Items are triangles of the result, "levels" aside: vertices. bytes_per_vertex: the most
-// memory taken at a time, over the vertices of the result, which is part of it; over_result: over the bytes of positions and triangles.
+// A .drc file is a stream of ours: "whole" is DecodeMesh, "base" what comes before the first level is shown, "levels"
+// ProgressiveDecoder on a base at hand, without triangles. A mesh file is coded by Draco at speed 0 with 12 bits first,
+// and by meshoptimizer with as many, in an order that its coders like: "draco" and "meshopt" decode that, to floats.
+// Without files, a bumpy torus is packed and decoded. Items are triangles of the result, "levels" aside: vertices.
+// bytes_per_vertex: the most memory taken at a time, over the vertices of the result, which is part of it; over_result:
+// over the bytes of positions and triangles. acmr: vertices that a GPU transforms per triangle, drawing the result
+// through a cache of the 16 last ones. Memory that was given back stays with the process: malloc would return large
+// blocks to the system, and taking them anew, page by page, costs more than a whole decoding does. "whole_anew" and
+// "draco_anew" take every byte anew, as a first decoding does.
 #include <benchmark/benchmark.h>
 #include <draco/compression/decode.h>
 #include <draco/compression/encode.h>
+#include <malloc.h>
+#ifdef LACERTA_HAVE_MESHOPTIMIZER
+#include <meshoptimizer.h>
+#endif
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -27,7 +38,7 @@
 namespace lacerta {
 namespace {
 
-constexpr int kDracoSpeed = 0, kDracoBits = 12;
+constexpr int kDracoSpeed = 0, kBits = 12;
 
 template <typename T>
 T Must(StatusOr<T> result, const std::string& what) {
@@ -40,28 +51,51 @@ struct Size {
   size_t vertices = 0, triangles = 0;
 };
 
+enum class Memory { kAtHand, kAnew };
+
 // Runs `decode`, which returns the size of what it decoded.
 template <typename Decode>
-Size RunAndMeasureMemory(benchmark::State& state, const Decode& decode) {
+Size RunAndMeasureMemory(benchmark::State& state, Memory memory, const Decode& decode) {
   Size size;
   const size_t before = HeapInUse();
   ResetHeapPeak();
-  for (auto _ : state) size = decode();
+  for (auto _ : state) {
+    if (memory == Memory::kAnew) {
+      state.PauseTiming();
+      malloc_trim(0);
+      state.ResumeTiming();
+    }
+    size = decode();
+  }
   const auto most = static_cast<double>(HeapPeak() - before), vertices = static_cast<double>(size.vertices);
   state.counters["vertices"] = vertices;
   state.counters["triangles"] = static_cast<double>(size.triangles);
   state.counters["bytes_per_vertex"] = most / vertices;
-  state.counters["over_result"] = most / (sizeof(Vec3f) * vertices + sizeof(Triangle) * static_cast<double>(size.triangles));
+  state.counters["over_result"] =
+      most / (sizeof(Vec3f) * vertices + sizeof(Triangle) * static_cast<double>(size.triangles));
   return size;
 }
 
-void DecodeWhole(benchmark::State& state, const std::string& name, const Bytes& stream, std::optional<int> max_level) {
+void CountCacheMisses(benchmark::State& state, const TriangleMesh& mesh) {
+#ifdef LACERTA_HAVE_MESHOPTIMIZER
+  constexpr unsigned kCacheSize = 16;
+  state.counters["acmr"] = meshopt_analyzeVertexCache(mesh.triangles[0].data(), 3 * mesh.triangles.size(),
+                                                      mesh.positions.size(), kCacheSize, 0, 0)
+                               .acmr;
+#else
+  (void)state, (void)mesh;
+#endif
+}
+
+void DecodeWhole(benchmark::State& state, const std::string& name, const Bytes& stream, std::optional<int> max_level,
+                 Memory memory) {
   DecodeOptions options;
   options.max_level = max_level;
-  const Size size = RunAndMeasureMemory(state, [&] {
+  const Size size = RunAndMeasureMemory(state, memory, [&] {
     const DecodedMesh decoded = Must(DecodeMesh(stream, options), name);
     return Size{decoded.mesh.positions.size(), decoded.mesh.triangles.size()};
   });
+  CountCacheMisses(state, Must(DecodeMesh(stream, options), name).mesh);
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(size.triangles));
 }
 
@@ -76,8 +110,9 @@ void DecodeLevels(benchmark::State& state, const std::string& name, const Bytes&
     parts.refinement = Span<const uint8_t>(stream).Subspan(decoded.bytes_used);
   }
   const RefinementInfo info = Must(ReadRefinementInfo(parts.refinement), name);
-  const BaseMesh base = Must(BaseMeshFromPositions(decoded.mesh, info.base_step != 0 ? info.base_step : decoded.step), name);
-  const Size size = RunAndMeasureMemory(state, [&] {
+  const BaseMesh base =
+      Must(BaseMeshFromPositions(decoded.mesh, info.base_step != 0 ? info.base_step : decoded.step), name);
+  const Size size = RunAndMeasureMemory(state, Memory::kAtHand, [&] {
     ProgressiveDecoder decoder = Must(ProgressiveDecoder::Create(base, {}), name);
     if (!decoder.Append(parts.refinement).ok()) std::exit(1);
     return Size{decoder.mesh().positions.size(), base.triangles.size() << 2 * decoder.level()};
@@ -88,7 +123,7 @@ void DecodeLevels(benchmark::State& state, const std::string& name, const Bytes&
 Bytes EncodeStock(const TriangleMesh& mesh, const std::string& name) {
   draco::Encoder encoder;
   encoder.SetSpeedOptions(kDracoSpeed, kDracoSpeed);
-  encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, kDracoBits);
+  encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, kBits);
   draco::EncoderBuffer buffer;
   const draco::Status status = encoder.EncodeMeshToBuffer(*ToDracoMesh(mesh), &buffer);
   if (!status.ok()) {
@@ -98,8 +133,8 @@ Bytes EncodeStock(const TriangleMesh& mesh, const std::string& name) {
   return Bytes(buffer.data(), buffer.data() + buffer.size());
 }
 
-void DecodeStock(benchmark::State& state, const std::string& name, const Bytes& stream) {
-  const Size size = RunAndMeasureMemory(state, [&] {
+void DecodeStock(benchmark::State& state, const std::string& name, const Bytes& stream, Memory memory) {
+  const Size size = RunAndMeasureMemory(state, memory, [&] {
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(stream.data()), stream.size());
     draco::Decoder decoder;
@@ -110,22 +145,99 @@ void DecodeStock(benchmark::State& state, const std::string& name, const Bytes& 
     }
     return Size{decoded.value()->num_points(), decoded.value()->num_faces()};
   });
+  state.counters["bytes"] = static_cast<double>(stream.size());
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(size.triangles));
 }
 
+#ifdef LACERTA_HAVE_MESHOPTIMIZER
+using Lattice = std::array<uint16_t, 4>;  // the last one is not used
+
+struct MeshoptStreams {
+  size_t num_vertices = 0, num_triangles = 0;
+  float step = 0;
+  Vec3f corner;
+  Bytes vertices, indices;
+};
+
+MeshoptStreams EncodeMeshopt(TriangleMesh mesh) {
+  MeshoptStreams coded;
+  coded.num_vertices = mesh.positions.size();
+  coded.num_triangles = mesh.triangles.size();
+  const size_t num_indices = 3 * coded.num_triangles;
+  uint32_t* const indices = mesh.triangles[0].data();
+  meshopt_optimizeVertexCache(indices, indices, num_indices, coded.num_vertices);
+  meshopt_optimizeVertexFetch(mesh.positions.data(), indices, num_indices, mesh.positions.data(), coded.num_vertices,
+                              sizeof(Vec3f));
+  Vec3f low = mesh.positions[0], high = low;
+  for (const Vec3f& p : mesh.positions) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3f extent = high - low;
+  coded.corner = low;
+  coded.step = std::max({extent.x, extent.y, extent.z}) / ((1 << kBits) - 1);
+  std::vector<Lattice> lattice;
+  for (const Vec3f& p : mesh.positions) {
+    const Vec3f q = (p - low) * (1 / coded.step);
+    lattice.push_back(
+        {static_cast<uint16_t>(q.x + 0.5f), static_cast<uint16_t>(q.y + 0.5f), static_cast<uint16_t>(q.z + 0.5f), 0});
+  }
+  coded.vertices.resize(meshopt_encodeVertexBufferBound(coded.num_vertices, sizeof(Lattice)));
+  coded.vertices.resize(meshopt_encodeVertexBuffer(coded.vertices.data(), coded.vertices.size(), lattice.data(),
+                                                   coded.num_vertices, sizeof(Lattice)));
+  coded.indices.resize(meshopt_encodeIndexBufferBound(num_indices, coded.num_vertices));
+  coded.indices.resize(meshopt_encodeIndexBuffer(coded.indices.data(), coded.indices.size(), indices, num_indices));
+  return coded;
+}
+
+void DecodeMeshopt(benchmark::State& state, const std::string& name, const MeshoptStreams& coded, Memory memory) {
+  const Size size = RunAndMeasureMemory(state, memory, [&] {
+    std::vector<Lattice> lattice(coded.num_vertices);
+    TriangleMesh mesh;
+    mesh.positions.reserve(coded.num_vertices);
+    mesh.triangles.resize(coded.num_triangles);
+    if (meshopt_decodeVertexBuffer(lattice.data(), coded.num_vertices, sizeof(Lattice), coded.vertices.data(),
+                                   coded.vertices.size()) != 0 ||
+        meshopt_decodeIndexBuffer(mesh.triangles[0].data(), 3 * coded.num_triangles, sizeof(uint32_t),
+                                  coded.indices.data(), coded.indices.size()) != 0) {
+      std::fprintf(stderr, "%s: meshoptimizer does not decode what it coded\n", name.c_str());
+      std::exit(1);
+    }
+    for (const Lattice& q : lattice) {
+      mesh.positions.push_back(coded.corner +
+                               Vec3f{static_cast<float>(q[0]), static_cast<float>(q[1]), static_cast<float>(q[2])} *
+                                   coded.step);
+    }
+    return Size{mesh.positions.size(), mesh.triangles.size()};
+  });
+  state.counters["bytes"] = static_cast<double>(coded.vertices.size() + coded.indices.size());
+  state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(size.triangles));
+}
+#endif
+
+template <typename Run>
+void Register(const std::string& what, const std::string& name, const Run& run) {
+  benchmark::RegisterBenchmark((what + "/" + name).c_str(), run)->Unit(benchmark::kMicrosecond);
+}
+
 void RegisterStream(const std::string& name, const Bytes& stream) {
-  const auto add = [&](const char* what, auto&& run) {
-    benchmark::RegisterBenchmark((what + ("/" + name)).c_str(), run)->Unit(benchmark::kMicrosecond);
-  };
-  add("whole", [=](benchmark::State& state) { DecodeWhole(state, name, stream, std::nullopt); });
-  add("base", [=](benchmark::State& state) { DecodeWhole(state, name, stream, 0); });
-  add("levels", [=](benchmark::State& state) { DecodeLevels(state, name, stream); });
+  Register("whole", name,
+           [=](benchmark::State& state) { DecodeWhole(state, name, stream, std::nullopt, Memory::kAtHand); });
+  Register("whole_anew", name,
+           [=](benchmark::State& state) { DecodeWhole(state, name, stream, std::nullopt, Memory::kAnew); });
+  Register("base", name, [=](benchmark::State& state) { DecodeWhole(state, name, stream, 0, Memory::kAtHand); });
+  Register("levels", name, [=](benchmark::State& state) { DecodeLevels(state, name, stream); });
 }
 
 void RegisterStock(const std::string& name, const TriangleMesh& mesh) {
   const Bytes stream = EncodeStock(mesh, name);
-  benchmark::RegisterBenchmark(("draco/" + name).c_str(), [=](benchmark::State& state) { DecodeStock(state, name, stream); })
-      ->Unit(benchmark::kMicrosecond);
+  Register("draco", name, [=](benchmark::State& state) { DecodeStock(state, name, stream, Memory::kAtHand); });
+  Register("draco_anew", name, [=](benchmark::State& state) { DecodeStock(state, name, stream, Memory::kAnew); });
+#ifdef LACERTA_HAVE_MESHOPTIMIZER
+  const MeshoptStreams coded = EncodeMeshopt(mesh);
+  Register("meshopt", name, [=](benchmark::State& state) { DecodeMeshopt(state, name, coded, Memory::kAtHand); });
+  Register("meshopt_anew", name, [=](benchmark::State& state) { DecodeMeshopt(state, name, coded, Memory::kAnew); });
+#endif
 }
 
 void RegisterFile(const std::string& path) {
@@ -152,6 +264,8 @@ void RegisterTorus() {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, -1);
   for (int i = 1; i < argc; ++i) lacerta::RegisterFile(argv[i]);
   if (argc == 1) lacerta::RegisterTorus();
   benchmark::RunSpecifiedBenchmarks();

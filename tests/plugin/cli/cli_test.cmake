@@ -99,6 +99,12 @@ expect_match("${OUT}" "PSNR +[1-9][0-9][0-9]")
 # trim, validate, external refinements
 expect(0 unpack ${CMAKE_CURRENT_LIST_DIR}/../../golden/v1/draco_form.drc -o round.ply)
 expect(0 pack round.ply -o round.glb --levels always)
+if(NOT SANITIZE)  # sanitizers end the program where there is no memory
+  expect(2 pack round.ply -o starved.glb --levels always --memory 1K)
+  expect_match("${ERR}" "round.ply: not enough memory")
+  expect_missing(starved.glb)
+endif()
+expect(0 pack round.ply -o fed.glb --levels always --memory 2G)
 expect(0 pack round.ply -o round.drc --levels always)
 expect(0 trim round.glb -o level0.glb --level 0)
 expect(0 info level0.glb --json)
