@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "batch.h"
 #include "commands.h"
 #include "exit_code.h"
 #include "lacerta/codec.h"
@@ -46,6 +47,7 @@ StatusOr<Unpacked> UnpackAsset(const Bytes& bytes, const UnpackArguments& argume
     }
     return WriteMesh(flat.mesh, options.origin, std::move(flat.notes), arguments.output);
   }
+  options.embed_images = AreApart(arguments.input, arguments.output);
   LACERTA_ASSIGN_OR_RETURN(UnpackResult result, UnpackGltf(bytes, options));
   LACERTA_RETURN_IF_ERROR(WriteFileAtomically(arguments.output, result.glb));
   return Unpacked{0, std::move(result.notes)};

@@ -55,7 +55,9 @@ struct PackOptions {
   // the animations and of turned joints, too, with morph targets at weight 1 of each.
   bool simplify = true;
   Fallback fallback = Fallback::kDraco;
-  std::string folder;  // where the external buffers of a .gltf are
+  std::string folder;  // where the external buffers and images of a .gltf are
+  // Images in files of their own become part of the GLB, which may then lie anywhere. Those of data URIs always do.
+  bool embed_images = false;
   // Not empty: refinements go into a file of their own, which the GLB refers to by this relative URI.
   std::string external_uri;
 };
@@ -124,6 +126,7 @@ StatusOr<Bytes> FormatPlainGlb(const FileMesh& mesh, const std::string& name);
 struct UnpackOptions {
   std::optional<int> level;  // stop there; empty: as far as the data goes
   std::string folder;
+  bool embed_images = false;  // of UnpackGltf: as in PackOptions
   DecodeLimits limits;
   Vec3d origin = {};  // of FlattenGltf: positions are relative to it
 };
