@@ -98,8 +98,7 @@ void RestoreUnits(Primitive* primitive) {
 
 void DropProgressive(GltfDocument* document) {
   if (Json* extensions = Find(document->json, "extensions"); extensions != nullptr && extensions->is_object()) {
-    extensions->erase(kProgressiveName);
-    if (extensions->empty()) document->json.erase("extensions");
+    if (extensions->erase(kProgressiveName) > 0 && extensions->empty()) document->json.erase("extensions");
   }
   RemoveExtension("extensionsUsed", kProgressiveName, document);
   RemoveExtension("extensionsRequired", kProgressiveName, document);
