@@ -1,5 +1,5 @@
 // One asset packed, beside stock Draco with the fewest bits that meet the same errors, measured in the same way:
-//   asset_report ORIGINAL.glb PACKED.glb UNPACKED.glb [--psnr DB] [--texels N] [--degrees N]
+//   asset_report ORIGINAL UNPACKED [--psnr DB] [--texels N] [--degrees N]
 // Prints one line of JSON. Errors are those of the worst mesh (meshes that touch count as one); UV in texels as the packer counts
 // them: of the asset's largest texture (at least 1024), as often as KHR_texture_transform repeats it.
 #include <draco/compression/expert_encode.h>
@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -42,10 +43,20 @@ struct Asset {
   uint64_t target_bytes = 0;  // of morph targets, which Draco leaves as they are
 };
 
+std::string Folder(const std::string& path) { return std::filesystem::path(path).parent_path().string(); }
+
+StatusOr<TriangleMesh> Flattened(const std::string& path) {
+  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(path));
+  UnpackOptions options;
+  options.folder = Folder(path);
+  LACERTA_ASSIGN_OR_RETURN(FlattenResult result, FlattenGltf(bytes, options));
+  return std::move(result.mesh);
+}
+
 StatusOr<Asset> Read(const std::string& path) {
   Asset asset;
   LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(path));
-  LACERTA_ASSIGN_OR_RETURN(asset.document, ParseGltf(bytes, ""));
+  LACERTA_ASSIGN_OR_RETURN(asset.document, ParseGltf(bytes, Folder(path)));
   for (const Place& place : AllPlaces(asset.document)) {
     StatusOr<Primitive> primitive = ReadPrimitive(asset.document, PrimitiveAt(asset.document, place), {});
     if (!primitive.ok()) continue;
@@ -244,12 +255,11 @@ uint64_t BorderEdges(const TriangleMesh& mesh) {
 
 Status Report(const std::vector<std::string>& files, const Errors& wanted) {
   LACERTA_ASSIGN_OR_RETURN(const Asset original, Read(files[0]));
-  LACERTA_ASSIGN_OR_RETURN(const Bytes packed, ReadFile(files[1]));
-  LACERTA_ASSIGN_OR_RETURN(const Asset unpacked, Read(files[2]));
+  LACERTA_ASSIGN_OR_RETURN(const Asset unpacked, Read(files[1]));
   LACERTA_ASSIGN_OR_RETURN(const std::vector<Judge> judges, MakeJudges(original, wanted.psnr));
   LACERTA_ASSIGN_OR_RETURN(const Errors ours, MeasureAll(judges, unpacked.primitives, kSamples));
-  LACERTA_ASSIGN_OR_RETURN(const FlattenResult before, FlattenGltf(ReadFile(files[0]).value(), {}));
-  LACERTA_ASSIGN_OR_RETURN(const FlattenResult after, FlattenGltf(ReadFile(files[2]).value(), {}));
+  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh before, Flattened(files[0]));
+  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh after, Flattened(files[1]));
 
   LACERTA_ASSIGN_OR_RETURN(const Stock stock, FewestStock(original.primitives, judges, wanted));
   uint64_t vertices = 0;
@@ -257,7 +267,7 @@ Status Report(const std::vector<std::string>& files, const Errors& wanted) {
   std::printf("{\"vertices\": %llu, \"psnr\": %.2f, \"texels\": %.3f, \"degrees\": %.3f, \"turned\": %.5f, \"borderEdgesBefore\": %llu, \"borderEdgesAfter\": %llu, "
               "\"stockBytes\": %llu, \"stockBits\": [%d, %d, %d], \"stockPsnr\": %.2f, \"stockTexels\": %.3f, \"stockDegrees\": %.3f}\n",
               static_cast<unsigned long long>(vertices), ours.psnr, ours.texels, ours.degrees, ours.turned,
-              static_cast<unsigned long long>(BorderEdges(before.mesh)), static_cast<unsigned long long>(BorderEdges(after.mesh)),
+              static_cast<unsigned long long>(BorderEdges(before)), static_cast<unsigned long long>(BorderEdges(after)),
               static_cast<unsigned long long>(stock.bytes + original.target_bytes), stock.bits[0], stock.bits[1], stock.bits[2], stock.errors.psnr, stock.errors.texels, stock.errors.degrees);
   return Status();
 }
@@ -280,8 +290,8 @@ int main(int argc, char** argv) {
       files.push_back(argument);
     }
   }
-  if (files.size() != 3) {
-    std::fprintf(stderr, "usage: asset_report ORIGINAL PACKED UNPACKED [--psnr DB] [--texels N] [--degrees N]\n");
+  if (files.size() != 2) {
+    std::fprintf(stderr, "usage: asset_report ORIGINAL UNPACKED [--psnr DB] [--texels N] [--degrees N]\n");
     return 1;
   }
   const lacerta::Status status = lacerta::Report(files, wanted);
