@@ -9,9 +9,6 @@
 namespace lacerta {
 namespace {
 
-// More faces than that near a point are not told apart: the work of a query is bounded.
-constexpr size_t kMaxNear = 48;
-
 bool ShareAValue(const TriangleMesh& surface, const MeshAttribute& attribute, uint32_t f, uint32_t g) {
   for (size_t i = 0; i < 3; ++i) {
     for (size_t j = 0; j < 3; ++j) {
@@ -91,7 +88,7 @@ bool GroupSurface::PointsNear(uint32_t group, const Vec3f& p, const Vec3d& norma
   *hint = points->front().face;
   const double reach = std::sqrt(static_cast<double>(closest.squared_distance)) + beyond;
   std::vector<ClosestPointResult> near;
-  part.tree.PointsNear(p, static_cast<float>(reach * reach), kMaxNear, &near);
+  part.tree.PointsNear(p, static_cast<float>(reach * reach), kMostNear - 1, &near);  // besides the closest one
   std::sort(near.begin(), near.end(), [](const ClosestPointResult& a, const ClosestPointResult& b) {
     return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance : a.point.face < b.point.face;
   });
@@ -108,7 +105,7 @@ bool GroupSurface::PointsNear(uint32_t group, const Vec3f& p, const Vec3d& norma
 void GroupSurface::KeepOnePerSide(const MeshAttribute& attribute, std::vector<Point>* points) const {
   const size_t count = points->size();
   if (count < 2) return;
-  std::array<uint8_t, kMaxNear + 1> side{};  // by the index of its first point
+  std::array<uint8_t, kMostNear> side{};  // by the index of its first point
   for (size_t i = 0; i < count; ++i) {
     side[i] = static_cast<uint8_t>(i);
     for (size_t j = 0; j < i; ++j) {

@@ -20,13 +20,60 @@ constexpr uint32_t kNone = MeshAttribute::kNoValue;
 constexpr size_t kBlockSize = 1024;
 constexpr double kStiffness = 0.02;  // of staying in place, relative to the samples around
 
-// A point of the mesh, and where the original is compared with it.
+// An attribute with more than one side at a sample, and which of the points near it stand for them, by bits.
+struct Sides {
+  size_t attribute;
+  uint64_t points;
+};
+static_assert(GroupSurface::kMostNear <= 64, "a bit for each point");
+
+// A point of the mesh, and where the original is compared with it: the nearest point first, then those that stand for further sides of seams.
 struct Sample {
   uint32_t face;
   std::array<float, 3> weights;
   double share;  // of the area
   std::vector<GroupSurface::Point> near;
+  std::vector<Sides> seams;  // ascending attributes
 };
+
+bool HasValue(const MeshAttribute& attribute, const GroupSurface::Point& point) { return attribute.corners[point.face][0] != kNone; }
+
+// Of all points near a sample, keeps those that stand for a side of any attribute: one or two of dozens, which would fill the memory.
+void KeepSides(const GroupSurface& original, const std::vector<GroupSurface::Point>& near, Sample* sample) {
+  if (near.empty()) return;
+  uint64_t all = 1;
+  std::vector<GroupSurface::Point> sides;
+  for (size_t a = 0; a < original.mesh().attributes.size(); ++a) {
+    const MeshAttribute& attribute = original.mesh().attributes[a];
+    if (!HasValue(attribute, near[0])) continue;
+    sides = near;
+    original.KeepOnePerSide(attribute, &sides);
+    if (sides.size() == 1) continue;
+    uint64_t points = 0;
+    for (size_t i = 0, side = 0; side < sides.size(); ++i) {
+      if (near[i].face == sides[side].face) points |= uint64_t{1} << i, ++side;
+    }
+    sample->seams.push_back({a, points});
+    all |= points;
+  }
+  std::vector<Sides> seams(sample->seams.size());  // by the numbers of the points that stay
+  for (size_t i = 0; i < near.size(); ++i) {
+    if ((all >> i & 1) == 0) continue;
+    for (size_t s = 0; s < seams.size(); ++s) seams[s].points |= (sample->seams[s].points >> i & 1) << sample->near.size();
+    sample->near.push_back(near[i]);
+  }
+  for (size_t s = 0; s < seams.size(); ++s) sample->seams[s].points = seams[s].points;
+}
+
+// The points that stand for the sides of an attribute.
+void SidesOf(const Sample& sample, size_t attribute, std::vector<GroupSurface::Point>* sides) {
+  sides->clear();
+  const auto seam = std::find_if(sample.seams.begin(), sample.seams.end(), [&](const Sides& s) { return s.attribute == attribute; });
+  const uint64_t points = seam == sample.seams.end() ? 1 : seam->points;
+  for (size_t i = 0; i < sample.near.size(); ++i) {
+    if ((points >> i & 1) != 0) sides->push_back(sample.near[i]);
+  }
+}
 
 std::vector<Sample> TakeSamples(const AttributedMesh& mesh, const GroupSurface& original, const AttributeFitOptions& options) {
   const TriangleMesh& surface = mesh.surface;
@@ -45,12 +92,13 @@ std::vector<Sample> TakeSamples(const AttributedMesh& mesh, const GroupSurface& 
     const auto count = std::max<uint64_t>(3, static_cast<uint64_t>(share * static_cast<double>(options.num_samples)));
     for (uint64_t i = 0; i < count; ++i) {
       const Vec3d w = TrianglePoint(n++, 0.5);
-      samples.push_back({f, {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)}, share / static_cast<double>(count), {}});
+      samples.push_back({f, {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)}, share / static_cast<double>(count), {}, {}});
     }
   }
   tbb::parallel_for(tbb::blocked_range<size_t>(0, (samples.size() + kBlockSize - 1) / kBlockSize, 1), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t block = range.begin(); block != range.end(); ++block) {
       uint32_t hint = kNone;
+      std::vector<GroupSurface::Point> near;
       for (size_t i = block * kBlockSize; i < std::min(samples.size(), (block + 1) * kBlockSize); ++i) {
         Sample& sample = samples[i];
         const Triangle& t = surface.triangles[sample.face];
@@ -60,7 +108,8 @@ std::vector<Sample> TakeSamples(const AttributedMesh& mesh, const GroupSurface& 
           p += corner[k] * static_cast<double>(sample.weights[k]);
         }
         const Vec3d normal = Cross(corner[1] - corner[0], corner[2] - corner[0]);
-        original.PointsNear(mesh.GroupOf(sample.face), Vec3Cast<float>(p), normal, options.seam_distance * options.diagonal, &hint, &sample.near);
+        original.PointsNear(mesh.GroupOf(sample.face), Vec3Cast<float>(p), normal, options.seam_distance * options.diagonal, &hint, &near);
+        KeepSides(original, near, &sample);
       }
     }
   });
@@ -90,15 +139,15 @@ class ValueFit {
   }
 
   // Chooses for each sample the side of the original whose value is nearest.
-  void SetTargets(const std::vector<Sample>& samples, const GroupSurface& original, const MeshAttribute& attribute) {
+  void SetTargets(const std::vector<Sample>& samples, const GroupSurface& original, size_t index) {
+    const MeshAttribute& attribute = original.mesh().attributes[index];
     std::vector<double> value(columns_);
     std::vector<GroupSurface::Point> sides;
     std::vector<double> errors;
     for (const Sample& sample : samples) {
-      if (nodes_[sample.face][0] == kNone || sample.near.empty() || attribute.corners[sample.near[0].face][0] == kNone) continue;
+      if (nodes_[sample.face][0] == kNone || sample.near.empty() || !HasValue(attribute, sample.near[0])) continue;
       const std::vector<double> here = ValueAt(sample, values_);
-      sides = sample.near;
-      original.KeepOnePerSide(attribute, &sides);
+      SidesOf(sample, index, &sides);
       double least = INFINITY;
       std::vector<double> target(columns_);
       for (const GroupSurface::Point& side : sides) {
@@ -238,7 +287,7 @@ void FitAttributes(const GroupSurface& original, const AttributeFitOptions& opti
   for (size_t a = 0; a < mesh->attributes.size(); ++a) {
     const MeshAttribute& wanted = original.mesh().attributes[a];
     ValueFit fit(*mesh, mesh->attributes[a]);
-    fit.SetTargets(samples, original, wanted);
+    fit.SetTargets(samples, original, a);
     fit.Solve();
     if (wanted.kind == AttributeKind::kTextureCoordinates && wanted.components == 2) fit.KeepUnmirrored();
     fit.Write(&mesh->attributes[a], ValueRange(wanted));

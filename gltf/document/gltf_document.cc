@@ -151,6 +151,7 @@ StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& f
     LACERTA_ASSIGN_OR_RETURN(chunks, SplitGlb(bytes));
   }
   GltfDocument document;
+  document.folder = folder;
   LACERTA_ASSIGN_OR_RETURN(document.json, ParseGltfJson(chunks.json));
   for (uint64_t i = 0; i < ArraySize(document.json, "buffers"); ++i) {
     StatusOr<Bytes> buffer = LoadBuffer(*FindElement(document.json, "buffers", i), i == 0,

@@ -18,6 +18,7 @@ struct GltfDocument {
   std::vector<Bytes> buffers;  // parallel to json["buffers"]
   // Instead of `buffers`, where a host keeps them itself; such a document is only read.
   std::vector<Span<const uint8_t>> borrowed_buffers;
+  std::string folder;  // where relative URIs lead
 };
 
 // The JSON of an asset, checked as far as everything here relies on it. Fails with kInvalidData or kUnsupported

@@ -65,6 +65,14 @@ std::optional<uint64_t> LongerSide(Span<const uint8_t> image) {
   return std::nullopt;
 }
 
+std::string ImageMimeType(Span<const uint8_t> image) {
+  if (HasText(image, 1, "PNG\r\n")) return "image/png";
+  if (image.size() >= 3 && image.data()[0] == 0xff && image.data()[1] == 0xd8) return "image/jpeg";
+  if (HasText(image, 0, "RIFF") && HasText(image, 8, "WEBP")) return "image/webp";
+  if (HasText(image, 1, "KTX 20")) return "image/ktx2";
+  return "";
+}
+
 uint64_t LargestImageSide(const GltfDocument& document) {
   uint64_t largest = 0;
   for (uint64_t i = 0; i < ArraySize(document.json, "images"); ++i) {
@@ -73,8 +81,8 @@ uint64_t LargestImageSide(const GltfDocument& document) {
     if (const std::optional<uint64_t> view = AsIndex(Find(image, "bufferView")); view.has_value()) {
       const StatusOr<Span<const uint8_t>> bytes = AvailableViewBytes(document, *view);
       if (bytes.ok()) side = LongerSide(bytes.value());
-    } else if (const std::string uri = AsString(Find(image, "uri")); uri.rfind("data:", 0) == 0) {
-      const StatusOr<Bytes> bytes = LoadUri(uri, "");
+    } else if (const std::string uri = AsString(Find(image, "uri")); !uri.empty()) {
+      const StatusOr<Bytes> bytes = LoadUri(uri, document.folder);
       if (bytes.ok()) side = LongerSide(bytes.value());
     }
     constexpr uint64_t kMostPixels = 1 << 16;  // no texture is larger, whatever a damaged header says

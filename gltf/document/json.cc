@@ -21,6 +21,38 @@ double ThroughDecimals(Number value, Precision... precision) {
   return number;
 }
 
+// Takes all that is well formed and remembers where it ends.
+struct EndFinder : nlohmann::json_sax<Json> {
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(size_t position, const std::string&, const nlohmann::detail::exception&) override {
+    bytes_read = position;
+    return false;
+  }
+  size_t bytes_read = 0;
+};
+
+// Of text that is not well formed, with the text there as far as it can be printed.
+std::string WhereItBreaks(std::string_view text) {
+  EndFinder finder;
+  Json::sax_parse(text.begin(), text.end(), &finder);
+  if (finder.bytes_read == 0 || finder.bytes_read > text.size()) return "at its end";
+  constexpr size_t kShown = 20;
+  std::string near;
+  for (const char c : text.substr(finder.bytes_read - 1, kShown)) near += c >= ' ' && c <= '~' ? c : '.';
+  return "at byte " + std::to_string(finder.bytes_read - 1) + ", where it goes on with \"" + near + "\"";
+}
+
 }  // namespace
 
 StatusOr<Json> ParseJson(std::string_view text) {
@@ -31,7 +63,7 @@ StatusOr<Json> ParseJson(std::string_view text) {
   };
   Json json = Json::parse(text.begin(), text.end(), limit_depth, /*allow_exceptions=*/false);
   if (too_deep) return InvalidData("the JSON is nested more than " + std::to_string(kMaxDepth) + " levels deep");
-  if (json.is_discarded()) return InvalidData("the JSON is not well formed; the file is truncated or damaged");
+  if (json.is_discarded()) return InvalidData("the JSON is not well formed " + WhereItBreaks(text) + "; the file is truncated or damaged");
   if (!json.is_object()) return InvalidData("the JSON is no object");
   return json;
 }

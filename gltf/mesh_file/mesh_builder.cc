@@ -42,7 +42,7 @@ Status AppendPolygon(const std::vector<int64_t>& corners, uint64_t num_vertices,
 
 Status CheckNotEmpty(const TriangleMesh& mesh) {
   if (!mesh.triangles.empty()) return Status();
-  return InvalidData("holds no faces (" + std::to_string(mesh.positions.size()) + " vertices); a surface is needed");
+  return Unsupported("holds no faces (" + std::to_string(mesh.positions.size()) + " vertices); a surface is needed");
 }
 
 Status CheckCount(uint64_t count, uint64_t bytes_each, uint64_t available, const std::string& what) {

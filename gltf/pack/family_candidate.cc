@@ -56,10 +56,15 @@ StatusOr<FamilyCandidate> ToCandidate(const FamilyContext& context, RoundedFamil
 StatusOr<FamilyCandidate> WithAllVertices(const FamilyContext& context, const FamilyMeter& meter, uint64_t most_bytes,
                                           std::vector<double>* everywhere) {
   // Vertices with other morph targets must not become one.
-  const auto targets_follow = [&](const RoundedFamily& rounded) { return ToCandidate(context, rounded).ok(); };
-  LACERTA_ASSIGN_OR_RETURN(RoundedFamily rounded, RoundFamily(meter.primitives(), meter, nullptr, {}, targets_follow, most_bytes));
-  *everywhere = std::move(rounded.everywhere);
-  return ToCandidate(context, std::move(rounded));
+  Status following;  // of the last precision
+  const auto targets_follow = [&](const RoundedFamily& rounded) {
+    following = ToCandidate(context, rounded).status();
+    return following.ok();
+  };
+  StatusOr<RoundedFamily> rounded = RoundFamily(meter.primitives(), meter, nullptr, {}, targets_follow, most_bytes);
+  if (!rounded.ok()) return following.ok() ? rounded.status() : following;
+  *everywhere = std::move(rounded.value().everywhere);
+  return ToCandidate(context, std::move(rounded).value());
 }
 
 StatusOr<FamilyCandidate> Simplified(const FamilyContext& context, const FamilyMeter& meter, const std::vector<double>& everywhere) {

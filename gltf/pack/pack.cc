@@ -4,6 +4,7 @@
 
 #include "document/buffer_edit.h"
 #include "document/draco_encode.h"
+#include "document/embed_images.h"
 #include "document/gltf_document.h"
 #include "draco/within_memory.h"
 #include "extension/progressive.h"
@@ -238,6 +239,7 @@ StatusOr<PackResult> PackGltf(Span<const uint8_t> asset, const PackOptions& opti
     if (options.repair) {
       LACERTA_ASSIGN_OR_RETURN(notes, RepairDocument(&document));
     }
+    EmbedImages(options.embed_images ? ImageFiles::kEmbed : ImageFiles::kReferTo, &document, &notes);
     LACERTA_ASSIGN_OR_RETURN(PackResult result, PackDocument(std::move(document), options));
     result.report.notes.insert(result.report.notes.begin(), notes.begin(), notes.end());
     return result;

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <set>
 #include <utility>
 
 #include "document/buffer_edit.h"
+#include "document/embed_images.h"
 #include "document/gltf_document.h"
 #include "document/place.h"
 #include "document/primitive.h"
@@ -46,6 +48,43 @@ void RestoreTangents(Primitive* primitive) {
   }
 }
 
+// Fits and lattices go a little beyond the values that were there.
+void RestoreColors(Primitive* primitive) {
+  for (Attribute& attribute : primitive->attributes) {
+    AccessorData& data = attribute.data;
+    if (attribute.name.rfind("COLOR_", 0) != 0 || data.type != ComponentType::kFloat) continue;
+    for (uint64_t i = 0; i < data.count * data.components; ++i) {
+      float value = 0.0f;
+      std::memcpy(&value, data.bytes.data() + i * sizeof(float), sizeof(float));
+      value = std::clamp(value, 0.0f, 1.0f);
+      std::memcpy(data.bytes.data() + i * sizeof(float), &value, sizeof(float));
+    }
+  }
+}
+
+// Slots without weight are those of joint 0.
+void RestoreJoints(Primitive* primitive) {
+  for (Attribute& attribute : primitive->attributes) {
+    if (attribute.name.rfind("JOINTS_", 0) != 0) continue;
+    const Attribute* weights = primitive->Find("WEIGHTS_" + attribute.name.substr(7));
+    AccessorData& data = attribute.data;
+    if (weights == nullptr || weights->data.components != data.components) continue;
+    const size_t size = ComponentSize(data.type);
+    for (uint64_t i = 0; i < data.count; ++i) {
+      for (uint32_t c = 0; c < data.components; ++c) {
+        if (weights->data.Float(i, c) == 0.0f) std::memset(data.bytes.data() + (i * data.components + c) * size, 0, size);
+      }
+    }
+  }
+}
+
+// What all readers have to be shown, whichever way a primitive was stored.
+void RestoreLegalValues(Primitive* primitive) {
+  RestoreTangents(primitive);
+  RestoreColors(primitive);
+  RestoreJoints(primitive);
+}
+
 void RestoreUnits(Primitive* primitive) {
   for (Attribute& attribute : primitive->attributes) {
     AccessorData& data = attribute.data;
@@ -54,13 +93,12 @@ void RestoreUnits(Primitive* primitive) {
     if (attribute.name == "WEIGHTS_0" && primitive->Find("WEIGHTS_1") == nullptr)
       Normalize(data.components, true, &data);
   }
-  RestoreTangents(primitive);
+  RestoreLegalValues(primitive);
 }
 
 void DropProgressive(GltfDocument* document) {
   if (Json* extensions = Find(document->json, "extensions"); extensions != nullptr && extensions->is_object()) {
-    extensions->erase(kProgressiveName);
-    if (extensions->empty()) document->json.erase("extensions");
+    if (extensions->erase(kProgressiveName) > 0 && extensions->empty()) document->json.erase("extensions");
   }
   RemoveExtension("extensionsUsed", kProgressiveName, document);
   RemoveExtension("extensionsRequired", kProgressiveName, document);
@@ -96,6 +134,7 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
   }
   AccessorPool pool(document, geometries);
   UnpackResult result;
+  if (options.embed_images) EmbedImages(ImageFiles::kEmbed, &document, &result.notes);
   AttributedCache cache;
   for (const std::vector<Place>& places : groups) {
     const Json primitive = PrimitiveAt(document, places[0]);
@@ -106,7 +145,7 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
       if (!surface.value().note.empty())
         result.notes.push_back(PlaceName(document, places[0]) + ": " + surface.value().note);
       Primitive plain = ToPrimitive(surface.value());
-      RestoreTangents(&plain);
+      RestoreLegalValues(&plain);
       NewGeometry geometry = PlainGeometry(plain, &document);
       geometry.targets = TargetAccessors(ToTargets(surface.value()), &document);
       ReplaceGeometry({places[0]}, places, std::move(geometry), &pool, &document);

@@ -250,4 +250,11 @@ Status WriteOutput(const std::string& path, Span<const uint8_t> bytes) {
   return written ? Status() : IoError("standard output cannot be written");
 }
 
+bool AreApart(const std::string& input, const std::string& output) {
+  if (output == "-") return true;
+  const auto folder = [](const std::string& path) { return fs::absolute(path).parent_path(); };
+  std::error_code error;
+  return !fs::equivalent(folder(input), folder(output), error) || error;
+}
+
 }  // namespace lacerta::cli

@@ -60,6 +60,9 @@ void AddBatchOptions(CLI::App* command, BatchOptions* options);
 StatusOr<Bytes> ReadInput(const std::string& path);
 Status WriteOutput(const std::string& path, Span<const uint8_t> bytes);
 
+// Whether two files are in different folders: a relative URI that leads somewhere from the one does not from the other.
+bool AreApart(const std::string& input, const std::string& output);
+
 }  // namespace lacerta::cli
 
 #endif  // LACERTA_CLI_BATCH_H_

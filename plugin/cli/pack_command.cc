@@ -212,6 +212,7 @@ StatusOr<FileOutcome> PackAsset(const PackArguments& arguments, const EncodeOpti
   if (arguments.fallback == "plain") options.fallback = Fallback::kPlain;
   if (arguments.fallback == "none") options.fallback = Fallback::kNone;
   options.folder = std::filesystem::path(arguments.input).parent_path().string();
+  options.embed_images = AreApart(arguments.input, arguments.output);
   const std::filesystem::path external = std::filesystem::path(arguments.output).replace_extension(".refinements.bin");
   if (arguments.external) options.external_uri = UriOf(external.filename().string());
   FileOutcome outcome;

@@ -51,6 +51,7 @@ StatusOr<Unpacked> UnpackAsset(const Bytes& bytes, const UnpackArguments& argume
     }
     return WriteMesh(flat.mesh, options.origin, std::move(flat.notes), arguments.output);
   }
+  options.embed_images = AreApart(arguments.input, arguments.output);
   LACERTA_ASSIGN_OR_RETURN(UnpackResult result, UnpackGltf(bytes, options));
   LACERTA_RETURN_IF_ERROR(WriteOutput(arguments.output, result.glb));
   return Unpacked{0, std::move(result.notes)};

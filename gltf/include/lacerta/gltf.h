@@ -58,7 +58,9 @@ struct PackOptions {
   // Of a glTF asset: numbers that are not finite are mended, each primitive with a note in the report, instead of refused. Vertices
   // without a finite position go with their triangles; other values follow those beside them.
   bool repair = false;
-  std::string folder;  // where the external buffers of a .gltf are
+  std::string folder;  // where the external buffers and images of a .gltf are
+  // Images in files of their own become part of the GLB, which may then lie anywhere. Those of data URIs always do.
+  bool embed_images = false;
   // Not empty: refinements go into a file of their own, which the GLB refers to by this relative URI.
   std::string external_uri;
 };
@@ -83,7 +85,7 @@ struct PrimitiveReport {
   std::string name;  // of the mesh; may be empty
   PrimitiveStorage storage = PrimitiveStorage::kUntouched;
   std::string reason;         // why it is not progressive, or what EncodeMesh had to say; else empty
-  uint64_t bytes_before = 0;  // of its attributes, indices and morph targets
+  uint64_t bytes_before = 0;  // of its attributes, indices and morph targets, as often as the asset holds them
   uint64_t bytes_after = 0;
   EncodeReport encode;  // of progressive ones; where several share a stream, of all of it with each
   // Of those stored as Draco or with attributes: measured d_S in mesh units (over all primitives that touch it and share its lattice), what
@@ -127,6 +129,7 @@ StatusOr<Bytes> FormatPlainGlb(const FileMesh& mesh, const std::string& name);
 struct UnpackOptions {
   std::optional<int> level;  // stop there; empty: as far as the data goes
   std::string folder;
+  bool embed_images = false;  // of UnpackGltf: as in PackOptions
   DecodeLimits limits;
   Vec3d origin = {};  // of FlattenGltf: positions are relative to it
 };

@@ -49,7 +49,8 @@ TEST(GltfDocument, ReadsDataUris) {
 }
 
 TEST(GltfDocument, NamesWhatIsWrong) {
-  EXPECT_THAT(MessageOf("{"), HasSubstr("not well formed"));
+  EXPECT_THAT(MessageOf("{"), HasSubstr("not well formed at its end"));
+  EXPECT_THAT(MessageOf("{\"asset\": [1, what?]}"), HasSubstr("not well formed at byte 14, where it goes on with \"what?]}\""));
   EXPECT_THAT(MessageOf("[]"), HasSubstr("no object"));
   EXPECT_THAT(MessageOf(R"({"asset": {"version": "1.0"}})"), HasSubstr("1.0"));
   EXPECT_THAT(MessageOf(R"({"asset": 2})"), HasSubstr("version"));

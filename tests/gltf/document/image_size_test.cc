@@ -2,29 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "gltf/test_bytes.h"
+#include "gltf/test_images.h"
+#include "lacerta/file_io.h"
 
 namespace lacerta {
 namespace {
 
-using testing::AppendBigEndian;
 using testing::FromText;
-
-Bytes Png(uint32_t width, uint32_t height) {
-  Bytes bytes = FromText("\x89PNG\r\n\x1a\n");
-  AppendBigEndian(uint32_t{13}, &bytes);
-  for (const char c : {'I', 'H', 'D', 'R'}) bytes.push_back(static_cast<uint8_t>(c));
-  AppendBigEndian(width, &bytes);
-  AppendBigEndian(height, &bytes);
-  return bytes;
-}
-
-Bytes Jpeg(uint16_t width, uint16_t height) {
-  Bytes bytes = {0xff, 0xd8, 0xff, 0xe0, 0, 4, 1, 2, 0xff, 0xc2, 0, 17, 8};
-  AppendBigEndian(height, &bytes);
-  AppendBigEndian(width, &bytes);
-  return bytes;
-}
+using testing::Jpeg;
+using testing::Png;
 
 TEST(ImageSize, ReadsHeaders) {
   EXPECT_EQ(LongerSide(Png(640, 2048)), 2048u);
@@ -51,6 +40,26 @@ TEST(ImageSize, TheLargestOfAnAsset) {
                    {"bufferViews", Json::array({{{"buffer", 0}, {"byteLength", png.size()}}})},
                    {"images", {{{"uri", "elsewhere.png"}}, {{"bufferView", 0}}, {{"bufferView", 7}}}}};
   EXPECT_EQ(LargestImageSide(document), 2048u);
+}
+
+TEST(ImageSize, FilesBesideTheAssetCount) {
+  GltfDocument document;
+  document.folder = ::testing::TempDir() + "/lacerta_image_size";
+  std::filesystem::create_directories(document.folder + "/textures");
+  ASSERT_TRUE(WriteFileAtomically(document.folder + "/textures/large one.png", Png(16, 4096)).ok());
+  document.json = {{"images", {{{"uri", "textures/large%20one.png"}}, {{"uri", "gone.png"}}}}};
+  EXPECT_EQ(LargestImageSide(document), 4096u);
+  document.folder += "/elsewhere";
+  EXPECT_EQ(LargestImageSide(document), 0u);
+}
+
+TEST(ImageSize, KindsByTheirFirstBytes) {
+  EXPECT_EQ(ImageMimeType(Png(1, 1)), "image/png");
+  EXPECT_EQ(ImageMimeType(Jpeg(1, 1)), "image/jpeg");
+  EXPECT_EQ(ImageMimeType(FromText("RIFF....WEBPVP8X")), "image/webp");
+  EXPECT_EQ(ImageMimeType(FromText("\xabKTX 20\xbb")), "image/ktx2");
+  EXPECT_EQ(ImageMimeType(FromText("GIF89a")), "");
+  EXPECT_EQ(ImageMimeType({}), "");
 }
 
 }  // namespace

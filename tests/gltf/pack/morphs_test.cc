@@ -60,6 +60,31 @@ TEST(Morphs, OffsetsThatAreMostlyNothingAreSparse) {
   EXPECT_GT(packed.glb.size() * 20, asset.size());
 }
 
+// A ball that bursts: each triangle has vertices of its own, which its target alone tells from those of the others.
+TEST(Morphs, ThatTellVerticesApartAreNamedAsTheReason) {
+  const TriangleMesh ball = testing::WavySphere(10, 14);
+  TriangleMesh pieces;
+  std::vector<Vec3f> offsets;
+  for (const Triangle& t : ball.triangles) {
+    const auto first = static_cast<uint32_t>(pieces.positions.size());
+    Vec3f middle{};
+    for (const uint32_t v : t) pieces.positions.push_back(ball.positions[v]), middle += ball.positions[v];
+    pieces.triangles.push_back({first, first + 1, first + 2});
+    offsets.insert(offsets.end(), 3, middle * 0.5f);
+  }
+  testing::AssetBuilder builder;
+  Json primitive = builder.Primitive(pieces);
+  primitive["targets"] = Json::array({{{"POSITION", builder.AddFloats(offsets, true)}}});
+  builder.AddMesh("ball", Json::array({primitive}));
+  PackOptions options;
+  options.simplify = false;
+  const auto packed = PackGltf(builder.Glb(), options);
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  const PrimitiveReport& report = packed.value().report.primitives[0];
+  EXPECT_EQ(report.storage, PrimitiveStorage::kUntouched);
+  EXPECT_NE(report.reason.find("has morph targets that tell apart what its other attributes do not"), std::string::npos) << report.reason;
+}
+
 TEST(Morphs, GoIntoAPrimitiveAndOutAgain) {
   Primitive primitive{3, {{0, 1, 2}}, {{"POSITION", MakeFloatAccessor(std::vector<float>(9, 0.0f), 3)}}};
   const AccessorData offsets = MakeFloatAccessor({0, 0, 0, 1, 0, 0, 0, 0.001f, 0}, 3);

@@ -118,6 +118,30 @@ TEST(Pack, ReportsEveryPrimitive) {
   for (const PrimitiveReport& primitive : report) EXPECT_LT(primitive.bytes_after, primitive.bytes_before);
 }
 
+// A tetrahedron, for which a description would take more than is saved, and a ball, each with three copies of its accessors.
+TEST(Pack, BytesOfCopiesCountAsOftenAsTheyAreThere) {
+  TriangleMesh small;
+  small.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  small.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const TriangleMesh ball = WavySphere(16, 24, {5, 0, 0});
+  AssetBuilder builder;
+  for (int copy = 0; copy < 3; ++copy) {
+    builder.AddMesh("small", Json::array({builder.Primitive(small)}));
+    builder.AddMesh("ball", Json::array({builder.Primitive(ball)}));
+  }
+  const auto packed = PackGltf(builder.Glb(), {});
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  const std::vector<PrimitiveReport>& report = packed.value().report.primitives;
+  ASSERT_EQ(report.size(), 2u);
+  const auto size = [](const TriangleMesh& mesh, size_t index) { return 12 * mesh.positions.size() + 3 * index * mesh.triangles.size(); };
+  EXPECT_EQ(report[0].storage, PrimitiveStorage::kUntouched) << report[0].reason;
+  EXPECT_THAT(report[0].bytes_before, ::testing::AnyOf(3 * size(small, 1), 3 * size(small, 2), 3 * size(small, 4)));
+  EXPECT_EQ(report[0].bytes_after, report[0].bytes_before);
+  EXPECT_NE(report[1].storage, PrimitiveStorage::kUntouched) << report[1].reason;
+  EXPECT_THAT(report[1].bytes_before, ::testing::AnyOf(3 * size(ball, 2), 3 * size(ball, 4)));
+  EXPECT_LT(report[1].bytes_after, report[1].bytes_before / 3);
+}
+
 Bytes TwoColoredBalls(uint32_t larger, uint32_t smaller) {
   AssetBuilder builder;
   for (const uint32_t size : {larger, smaller}) {

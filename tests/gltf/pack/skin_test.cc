@@ -50,6 +50,24 @@ const PackResult& PackedBentCylinder() {
   return *kResult;
 }
 
+TEST(Skin, SlotsWithoutWeightAreUnpackedAsJointZero) {
+  const GltfDocument document = ParseGltf(Unpacked(PackedBentCylinder()), "").value();
+  const Primitive primitive = ReadPrimitive(document, PrimitiveAt(document, {0, 0}), {}).value();
+  const Attribute *joints = primitive.Find("JOINTS_0"), *weights = primitive.Find("WEIGHTS_0");
+  ASSERT_TRUE(joints != nullptr && weights != nullptr);
+  uint64_t without = 0, others = 0;
+  for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
+    for (uint32_t c = 0; c < 4; ++c) {
+      const bool weightless = weights->data.Float(v, c) == 0.0f;
+      without += weightless;
+      others += !weightless && joints->data.Float(v, c) != 0.0f;
+      ASSERT_TRUE(!weightless || joints->data.Float(v, c) == 0.0f) << "vertex " << v << ", slot " << c;
+    }
+  }
+  EXPECT_GT(without, 0u);
+  EXPECT_GT(others, 0u);
+}
+
 TEST(Skin, BentCylinderIsSimplifiedAndHoldsItsErrorInPoses) {
   const Bytes asset = BentCylinder();
   const PackResult all = Pack(asset, false);

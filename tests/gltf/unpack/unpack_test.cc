@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "document/gltf_document.h"
@@ -226,6 +227,52 @@ TEST(Describe, BareStreamsAgreeWithTheirReport) {
       EXPECT_EQ(info.value().levels[i].bytes, encoded.value().report.levels[i].bytes);
     }
     EXPECT_EQ(info.value().levels.back().bytes, encoded.value().stream.size());
+  }
+}
+
+TEST(Unpack, LeavesWhatIsEmpty) {
+  testing::AssetBuilder builder;
+  builder.document().json["extensions"] = Json::object();
+  builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(8, 12))}));
+  const Json before = JsonOf(builder.Glb()), after = JsonOf(UnpackGltf(builder.Glb(), {}).value().glb);
+  EXPECT_EQ(after["extensions"], Json::object());
+  EXPECT_EQ(after["materials"], before["materials"]);
+}
+
+// Lattices and fits go beyond the values that were there, which core glTF does not allow.
+TEST(Unpack, ColorsOfFloatsAreLegal) {
+  testing::AssetBuilder builder;
+  Json primitives = Json::array();
+  for (VertexSoup half : shapes::HalvedTorus(64, 32)) {
+    VertexSoup::Attribute colors{"COLOR_0", AttributeKind::kColor, 3, {}};
+    for (const Vec3f& p : half.positions) {
+      for (int axis = 0; axis < 3; ++axis) colors.values.push_back(std::clamp(0.5f + 0.9f * p[axis], 0.0f, 1.0f));
+    }
+    half.attributes.push_back(colors);
+    primitives.push_back(testing::AddSoup(half, &builder));
+  }
+  builder.AddMesh("torus", std::move(primitives));
+  for (const LevelChoice levels : {LevelChoice::kNever, LevelChoice::kAlways}) {
+    PackOptions options;
+    options.encode.target = {EncodeTarget::Kind::kPsnr, 60.0};
+    options.encode.levels = levels;
+    options.attributes.color = 0.01;
+    const auto packed = PackGltf(builder.Glb(), options);
+    ASSERT_TRUE(packed.ok()) << packed.status().message();
+    const GltfDocument document = ParseGltf(UnpackGltf(packed.value().glb, {}).value().glb, "").value();
+    float least = 1.0f, most = 0.0f;
+    for (uint64_t part = 0; part < 2; ++part) {
+      const Primitive primitive = ReadPrimitive(document, PrimitiveAt(document, {0, part}), {}).value();
+      const Attribute* colors = primitive.Find("COLOR_0");
+      ASSERT_NE(colors, nullptr);
+      for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
+        for (uint32_t c = 0; c < 3; ++c) least = std::min(least, colors->data.Float(v, c)), most = std::max(most, colors->data.Float(v, c));
+      }
+    }
+    EXPECT_GE(least, 0.0f) << packed.value().report.primitives[0].reason;
+    EXPECT_LT(least, 0.01f);
+    EXPECT_LE(most, 1.0f) << packed.value().report.primitives[0].reason;
+    EXPECT_GT(most, 0.99f);
   }
 }
 
