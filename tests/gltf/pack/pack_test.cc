@@ -323,7 +323,7 @@ TEST(Pack, AllThatSurfacesNeedComesBeforeTheirStreamsAndImagesLast) {
   const StatusOr<Progressive> progressive = ParseProgressive(after);
   ASSERT_TRUE(progressive.ok()) << progressive.status().message();
   const auto range_of = [&](const Json& view) {
-    const auto begin = view["byteOffset"].get<uint64_t>();
+    const auto begin = view.value("byteOffset", uint64_t{0});
     return std::make_pair(begin, begin + view["byteLength"].get<uint64_t>());
   };
   const Json& views = after.json["bufferViews"];
