@@ -66,7 +66,8 @@ std::optional<uint64_t> LongerSide(Span<const uint8_t> image) {
 }
 
 std::string ImageMimeType(Span<const uint8_t> image) {
-  if (HasText(image, 1, "PNG\r\n")) return "image/png";
+  constexpr char kPng[] = "\x89PNG\r\n\x1a\n";
+  if (image.size() > std::strlen(kPng) && HasText(image, 0, kPng)) return "image/png";
   if (image.size() >= 3 && image.data()[0] == 0xff && image.data()[1] == 0xd8) return "image/jpeg";
   if (HasText(image, 0, "RIFF") && HasText(image, 8, "WEBP")) return "image/webp";
   if (HasText(image, 1, "KTX 20")) return "image/ktx2";

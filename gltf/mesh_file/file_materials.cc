@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "document/image_size.h"
 #include "document/uri.h"
 #include "lacerta/file_io.h"
 #include "mesh_file/text_scanner.h"
@@ -36,10 +36,8 @@ StatusOr<Bytes> ReadInFolder(const std::string& path, const std::string& folder)
 
 // Empty where it is neither a PNG nor a JPEG, the images of core glTF.
 std::string MimeTypeOf(const Bytes& image) {
-  constexpr uint8_t kPng[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  if (image.size() > sizeof(kPng) && std::memcmp(image.data(), kPng, sizeof(kPng)) == 0) return "image/png";
-  if (image.size() > 2 && image[0] == 0xff && image[1] == 0xd8) return "image/jpeg";
-  return "";
+  const std::string type = ImageMimeType(image);
+  return type == "image/png" || type == "image/jpeg" ? type : "";
 }
 
 class Loader {
