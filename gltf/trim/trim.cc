@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "document/buffer_edit.h"
+#include "document/embed_images.h"
 #include "document/gltf_document.h"
 #include "extension/progressive.h"
 #include "lacerta/gltf.h"
@@ -39,9 +40,10 @@ struct Source {
   Bytes data;                     // as much as there is
 };
 
-StatusOr<Source> Read(Span<const uint8_t> asset, const std::string& folder) {
+StatusOr<Source> Read(Span<const uint8_t> asset, const TrimOptions& options, std::vector<std::string>* notes) {
   Source source;
-  LACERTA_ASSIGN_OR_RETURN(source.document, ParseGltf(asset, folder));
+  LACERTA_ASSIGN_OR_RETURN(source.document, ParseGltf(asset, options.folder));
+  if (options.embed_images) EmbedImages(ImageFiles::kEmbed, &source.document, notes);
   LACERTA_ASSIGN_OR_RETURN(source.progressive, ParseProgressive(source.document));
   LACERTA_ASSIGN_OR_RETURN(source.data, TransmittedBytes(source.document, source.progressive));
   uint64_t offset = 0;
@@ -78,12 +80,12 @@ StatusOr<TrimResult> TrimGltf(Span<const uint8_t> asset, const TrimOptions& opti
   if (options.level.has_value() == options.bytes.has_value()) {
     return InvalidArgument("either a level or a number of bytes has to be given");
   }
-  LACERTA_ASSIGN_OR_RETURN(const Source source, Read(asset, options.folder));
+  TrimResult result;
+  LACERTA_ASSIGN_OR_RETURN(const Source source, Read(asset, options, &result.notes));
   const std::vector<uint64_t> levels = LevelsOf(source.progressive.segments, source.progressive.streams.size());
   size_t count = levels.size();
   const uint64_t level = options.level.has_value() ? static_cast<uint64_t>(std::max(*options.level, 0)) : ~uint64_t{0};
   const std::vector<size_t> order = OrderByLevel(levels, level, &count);
-  TrimResult result;
   LACERTA_ASSIGN_OR_RETURN(result.glb, Write(source, order, count));
   if (!options.bytes.has_value() || result.glb.size() <= *options.bytes) return result;
   // The bases open the order and always stay; between them and all of it the size grows with the count.

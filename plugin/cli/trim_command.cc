@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "batch.h"
 #include "commands.h"
@@ -50,10 +51,11 @@ StatusOr<TrimResult> KeepWhole(const Bytes& bytes, const TrimArguments& argument
   return result;
 }
 
-StatusOr<TrimResult> Trim(const Bytes& bytes, MeshFormat format, const std::string& folder, const TrimArguments& arguments, bool* has_levels) {
+StatusOr<TrimResult> Trim(const Bytes& bytes, MeshFormat format, const BatchItem& item, const TrimArguments& arguments, bool* has_levels) {
   *has_levels = true;
   if (format == MeshFormat::kDrc) return TrimStream(bytes, arguments);
   if (format != MeshFormat::kGltf) return Unsupported("is not packed; trim takes .glb, .gltf and .drc");
+  const std::string folder = std::filesystem::path(item.input).parent_path().string();
   const StatusOr<AssetInfo> info = DescribeGltf(bytes, folder);
   *has_levels = !info.ok() || !info.value().streams.empty();
   if (!*has_levels) return KeepWhole(bytes, arguments);
@@ -61,6 +63,7 @@ StatusOr<TrimResult> Trim(const Bytes& bytes, MeshFormat format, const std::stri
   options.level = arguments.level;
   options.bytes = arguments.bytes;
   options.folder = folder;
+  options.embed_images = AreApart(item.input, item.output);
   return TrimGltf(bytes, options);
 }
 
@@ -68,16 +71,19 @@ StatusOr<FileOutcome> TrimFile(const TrimArguments& arguments, const BatchItem& 
   LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadInput(item.input));
   const StatusOr<MeshFormat> format = DetectMeshFormat(item.input, bytes);
   if (!format.ok()) return format.status().WithContext(item.input);
-  const std::string folder = std::filesystem::path(item.input).parent_path().string();
   bool has_levels = true;
-  const StatusOr<TrimResult> trimmed = Trim(bytes, format.value(), folder, arguments, &has_levels);
+  const StatusOr<TrimResult> trimmed = Trim(bytes, format.value(), item, arguments, &has_levels);
   if (!trimmed.ok()) return trimmed.status().WithContext(item.input);
   LACERTA_RETURN_IF_ERROR(WriteOutput(item.output, trimmed.value().glb));
   FileOutcome outcome;
   outcome.exit_code = trimmed.value().meets_bytes ? kExitOk : kExitTargetMissed;
   outcome.bytes_before = bytes.size();
   outcome.bytes_after = trimmed.value().glb.size();
-  outcome.json = {{"bytes", outcome.bytes_after}, {"targetMet", trimmed.value().meets_bytes}, {"hasLevels", has_levels}};
+  const std::vector<std::string>& notes = trimmed.value().notes;
+  outcome.json = {{"bytes", outcome.bytes_after}, {"targetMet", trimmed.value().meets_bytes}, {"hasLevels", has_levels}, {"notes", notes}};
+  for (const std::string& note : notes) {
+    if (!arguments.batch.json) std::fprintf(stderr, "lacerta: %s: %s\n", item.input.c_str(), note.c_str());
+  }
   if (!has_levels && !arguments.batch.json) std::fprintf(stderr, "lacerta: %s: no mesh of it has levels; it stays whole\n", item.input.c_str());
   if (!trimmed.value().meets_bytes) {
     std::fprintf(stderr, "lacerta: %s misses the target: without any refinement it has %llu bytes\n",

@@ -169,11 +169,13 @@ struct TrimOptions {
   std::optional<int> level;       // keep no bytes of levels above it; exactly one of the two has to be set
   std::optional<uint64_t> bytes;  // of the GLB at most
   std::string folder;
+  bool embed_images = false;  // as in PackOptions; they count in `bytes`
 };
 
 struct TrimResult {
   Bytes glb;
   bool meets_bytes = true;  // false: even the base meshes and all that is not geometry are larger
+  std::vector<std::string> notes;  // images that stay references
 };
 
 // A packed asset with fewer refinements, as a legal asset again: the segments that stay are whole, everything else is as

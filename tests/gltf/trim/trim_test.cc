@@ -1,9 +1,11 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "document/gltf_document.h"
 #include "extension/progressive.h"
+#include "gltf/test_images.h"
 #include "gltf/two_streams.h"
 #include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
@@ -87,6 +89,30 @@ TEST(Trim, OfATrimmedAssetIsTheSame) {
   EXPECT_EQ(TrimGltf(once, options).value().glb, once);
   options.level = 0;
   EXPECT_EQ(TrimGltf(once, options).value().glb, TrimGltf(TwoStreams().glb, options).value().glb);
+}
+
+TEST(Trim, TakesImagesInFilesAlongWhereAsked) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "lacerta_trim_images";
+  std::filesystem::create_directories(folder);
+  const Bytes png = testing::Png(8, 8);
+  ASSERT_TRUE(WriteFileAtomically((folder / "a.png").string(), png).ok());
+  GltfDocument document = ParseGltf(TwoStreams().glb, "").value();
+  document.json["images"] = {{{"uri", "a.png"}}, {{"uri", "lost.png"}}};
+  const Bytes asset = FormatGlb(document);
+  TrimOptions options;
+  options.level = 0;
+  options.folder = folder.string();
+  const TrimResult apart = TrimGltf(asset, options).value();
+  options.embed_images = true;
+  const TrimResult whole = TrimGltf(asset, options).value();
+  std::filesystem::remove_all(folder);
+  EXPECT_TRUE(apart.notes.empty());
+  EXPECT_EQ(ParseGltf(apart.glb, "").value().json["images"], document.json["images"]);
+  ASSERT_EQ(whole.notes.size(), 1u);
+  EXPECT_THAT(whole.notes[0], ::testing::HasSubstr("lost.png"));
+  const GltfDocument trimmed = ParseGltf(whole.glb, "").value();
+  const auto view = BufferViewBytes(trimmed, trimmed.json["images"][0].at("bufferView").get<uint64_t>());
+  EXPECT_EQ(Bytes(view.value().begin(), view.value().end()), png);
 }
 
 TEST(Trim, RefusesWhatMakesNoSense) {
