@@ -9,6 +9,8 @@
 namespace lacerta {
 namespace {
 
+constexpr uint64_t kMostKeyframes = uint64_t{1} << 24;  // of all tracks: many may refer to the same long accessor
+
 std::optional<AnimationTrack::Part> PartOf(const std::string& path) {
   if (path == "translation") return AnimationTrack::Part::kTranslation;
   if (path == "rotation") return AnimationTrack::Part::kRotation;
@@ -16,38 +18,66 @@ std::optional<AnimationTrack::Part> PartOf(const std::string& path) {
   return std::nullopt;
 }
 
-// The middle of each triple: cubic splines have a tangent before and after every value.
-AccessorData WithoutTangents(const AccessorData& data) {
-  const size_t size = data.components * ComponentSize(data.type);
+// Values of one part of a node.
+struct Keyframes {
+  std::vector<float> times;
+  AccessorData values;
+  uint64_t values_per_key = 1;
+  bool is_stepped = false;
+};
+
+// The middle of each three parts of a key: cubic splines have tangents before and after its values.
+AccessorData WithoutTangents(const AccessorData& data, uint64_t values_per_key) {
+  const size_t size = values_per_key * data.components * ComponentSize(data.type);
   AccessorData result = data;
   result.count = data.count / 3;
   result.bytes.clear();
-  for (uint64_t i = 0; i < result.count; ++i) {
-    const auto begin = data.bytes.begin() + static_cast<std::ptrdiff_t>((3 * i + 1) * size);
+  for (uint64_t key = 0; key < result.count / values_per_key; ++key) {
+    const auto begin = data.bytes.begin() + static_cast<std::ptrdiff_t>((3 * key + 1) * size);
     result.bytes.insert(result.bytes.end(), begin, begin + static_cast<std::ptrdiff_t>(size));
   }
   return result;
 }
 
-std::optional<AnimationTrack> ReadTrack(const GltfDocument& document, const Json& animation, const Json& channel) {
-  const Json* target = Find(channel, "target");
+// Of a channel's sampler.
+std::optional<Keyframes> ReadKeyframes(const GltfDocument& document, const Json& animation, const Json& channel) {
   const Json* sampler = FindElement(animation, "samplers", AsIndex(Find(channel, "sampler")).value_or(~uint64_t{0}));
-  if (target == nullptr || sampler == nullptr) return std::nullopt;
-  const std::optional<uint64_t> node = AsIndex(Find(*target, "node"));
-  const std::optional<AnimationTrack::Part> part = PartOf(AsString(Find(*target, "path")));
+  if (sampler == nullptr) return std::nullopt;
   const std::optional<uint64_t> input = AsIndex(Find(*sampler, "input")), output = AsIndex(Find(*sampler, "output"));
-  if (!node.has_value() || !part.has_value() || !input.has_value() || !output.has_value()) return std::nullopt;
+  if (!input.has_value() || !output.has_value()) return std::nullopt;
   const StatusOr<AccessorData> times = ReadAccessor(document, *input);
   StatusOr<AccessorData> values = ReadAccessor(document, *output);
   if (!times.ok() || !values.ok() || times.value().count == 0 || times.value().components != 1) return std::nullopt;
   const std::string interpolation = AsString(Find(*sampler, "interpolation"));
-  AnimationTrack track{*node, *part, {}, std::move(values).value(), interpolation == "STEP"};
-  if (interpolation == "CUBICSPLINE") track.values = WithoutTangents(track.values);
+  const bool is_cubic = interpolation == "CUBICSPLINE";
+  const uint64_t parts = times.value().count * (is_cubic ? 3 : 1);
+  Keyframes result{{}, std::move(values).value(), 0, interpolation == "STEP"};
+  result.values_per_key = result.values.count / parts;
+  if (result.values_per_key == 0 || result.values.count != result.values_per_key * parts) return std::nullopt;
+  if (is_cubic) result.values = WithoutTangents(result.values, result.values_per_key);
+  for (uint64_t i = 0; i < times.value().count; ++i) result.times.push_back(times.value().Float(i, 0));
+  if (!std::is_sorted(result.times.begin(), result.times.end())) return std::nullopt;
+  return result;
+}
+
+std::optional<uint64_t> TargetNode(const Json& channel) {
+  const Json* target = Find(channel, "target");
+  return target == nullptr ? std::nullopt : AsIndex(Find(*target, "node"));
+}
+
+std::string TargetPath(const Json& channel) {
+  const Json* target = Find(channel, "target");
+  return target == nullptr ? "" : AsString(Find(*target, "path"));
+}
+
+std::optional<AnimationTrack> ReadTrack(const GltfDocument& document, const Json& animation, const Json& channel) {
+  const std::optional<uint64_t> node = TargetNode(channel);
+  const std::optional<AnimationTrack::Part> part = PartOf(TargetPath(channel));
+  if (!node.has_value() || !part.has_value()) return std::nullopt;
+  std::optional<Keyframes> keyframes = ReadKeyframes(document, animation, channel);
   const uint32_t components = *part == AnimationTrack::Part::kRotation ? 4 : 3;
-  if (track.values.components != components || track.values.count != times.value().count) return std::nullopt;
-  for (uint64_t i = 0; i < times.value().count; ++i) track.times.push_back(times.value().Float(i, 0));
-  if (!std::is_sorted(track.times.begin(), track.times.end())) return std::nullopt;
-  return track;
+  if (!keyframes.has_value() || keyframes->values.components != components || keyframes->values_per_key != 1) return std::nullopt;
+  return AnimationTrack{*node, *part, std::move(keyframes->times), std::move(keyframes->values), keyframes->is_stepped};
 }
 
 }  // namespace
@@ -80,7 +110,6 @@ void AnimationTrack::Place(double time, NodePlacement* placement) const {
 }
 
 std::vector<Animation> ReadAnimations(const GltfDocument& document) {
-  constexpr uint64_t kMostKeyframes = uint64_t{1} << 24;  // of all tracks: many may refer to the same long accessor
   uint64_t keyframes = 0;
   std::vector<Animation> animations;
   for (uint64_t a = 0; a < ArraySize(document.json, "animations"); ++a) {
@@ -99,6 +128,24 @@ std::vector<Animation> ReadAnimations(const GltfDocument& document) {
     if (!animation.tracks.empty()) animations.push_back(std::move(animation));
   }
   return animations;
+}
+
+std::vector<WeightTrack> ReadWeightTracks(const GltfDocument& document) {
+  uint64_t values = 0;
+  std::vector<WeightTrack> tracks;
+  for (uint64_t a = 0; a < ArraySize(document.json, "animations"); ++a) {
+    const Json& animation = *FindElement(document.json, "animations", a);
+    for (uint64_t c = 0; c < ArraySize(animation, "channels") && values < kMostKeyframes; ++c) {
+      const Json& channel = *FindElement(animation, "channels", c);
+      const std::optional<uint64_t> node = TargetNode(channel);
+      if (!node.has_value() || TargetPath(channel) != "weights") continue;
+      std::optional<Keyframes> keyframes = ReadKeyframes(document, animation, channel);
+      if (!keyframes.has_value() || keyframes->values.components != 1) continue;
+      values += keyframes->values.count;
+      tracks.push_back({*node, keyframes->values_per_key, std::move(keyframes->values)});
+    }
+  }
+  return tracks;
 }
 
 }  // namespace lacerta

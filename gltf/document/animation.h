@@ -1,4 +1,4 @@
-// What animations do to the nodes of a document.
+// What animations do to the nodes of a document, and to the morph targets of their meshes.
 #ifndef LACERTA_DOCUMENT_ANIMATION_H_
 #define LACERTA_DOCUMENT_ANIMATION_H_
 
@@ -32,6 +32,16 @@ struct Animation {
 
 // All animations that move nodes. Tracks that cannot be read are left out, and those beyond 16 million keyframes.
 std::vector<Animation> ReadAnimations(const GltfDocument& document);
+
+// Weights of the morph targets of a node's mesh at its keyframes.
+struct WeightTrack {
+  uint64_t node = 0;
+  uint64_t num_targets = 0;  // > 0
+  AccessorData values;       // keyframe after keyframe, one for each target; at least one keyframe
+};
+
+// Of all animations; those that cannot be read are left out, as above.
+std::vector<WeightTrack> ReadWeightTracks(const GltfDocument& document);
 
 }  // namespace lacerta
 

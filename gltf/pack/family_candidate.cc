@@ -73,7 +73,7 @@ StatusOr<FamilyCandidate> Simplified(const FamilyContext& context, const FamilyM
   FamilyCandidate candidate;
   if (context.HasTargets()) {
     LACERTA_ASSIGN_OR_RETURN(MorphedFamily simplified,
-                             SimplifyMorphedFamily(meter, context.Targets(), context.scene->texel_side, bounds));
+                             SimplifyMorphedFamily(meter, context.Targets(), context.Mixes(), context.scene->texel_side, bounds));
     candidate = ToCandidate(context, std::move(simplified.rounded), std::move(simplified.targets));
   } else {
     LACERTA_ASSIGN_OR_RETURN(RoundedFamily simplified, SimplifyFamily(meter, bounds));

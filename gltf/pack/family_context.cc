@@ -50,9 +50,20 @@ std::vector<const std::vector<MorphTarget>*> FamilyContext::Targets() const {
   return targets;
 }
 
-StatusOr<std::optional<Skin>> FamilyContext::FindSkin() const {
+std::vector<const Source*> FamilyContext::Sources() const {
   std::vector<const Source*> sources;
   for (const size_t member : members()) sources.push_back(&scene->sources[member]);
+  return sources;
+}
+
+std::vector<TargetMix> FamilyContext::Mixes() const {
+  size_t num_targets = 0;
+  for (const std::vector<MorphTarget>* targets : Targets()) num_targets = std::max(num_targets, targets->size());
+  return FindTargetMixes(*scene->document, Sources(), num_targets);
+}
+
+StatusOr<std::optional<Skin>> FamilyContext::FindSkin() const {
+  const std::vector<const Source*> sources = Sources();
   if (std::none_of(sources.begin(), sources.end(), [](const Source* source) { return HasJoints(*source); })) return std::optional<Skin>();
   LACERTA_ASSIGN_OR_RETURN(Skin skin, lacerta::FindSkin(*scene->document, sources, scene->poses));
   return std::optional<Skin>(std::move(skin));

@@ -13,6 +13,7 @@
 #include "pack/attributed_family.h"
 #include "pack/packed_scene.h"
 #include "pack/skin.h"
+#include "pack/target_mixes.h"
 
 namespace lacerta {
 
@@ -27,8 +28,10 @@ struct FamilyContext {
   const std::vector<size_t>& members() const { return scene->families.families[family].members; }
   double Error() const { return FamilyError(scene->families, family, TargetPsnr(options->encode.target)); }  // mesh units
   std::vector<const Primitive*> Primitives() const;
+  std::vector<const Source*> Sources() const;
   bool HasTargets() const;  // of morphs
   std::vector<const std::vector<MorphTarget>*> Targets() const;  // of each member
+  std::vector<TargetMix> Mixes() const;  // that the asset shows
   StatusOr<std::optional<Skin>> FindSkin() const;  // what moves the family; empty where nothing does
   TexelScale Scale() const;  // refers to the scene
   uint64_t BytesBefore() const;    // of all members' data, as often as the asset holds it

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -59,30 +60,53 @@ bool IsOfDirections(const MeshAttribute& attribute) {
   return ParseTargetChannels(attribute.name).has_value() && !IsOfPositions(attribute);
 }
 
-// With target `t` of an attribute at weight 1. Vertices where offsets have seams are several.
-TriangleMesh Morphed(const AttributedMesh& mesh, const MeshAttribute& offsets, size_t t) {
-  std::vector<uint32_t> vertex_of(offsets.num_values(), kNone), at(offsets.num_values(), kNone),
-      still(mesh.surface.positions.size(), kNone);
-  TriangleMesh result;
-  for (size_t f = 0; f < mesh.surface.triangles.size(); ++f) {
-    Triangle triangle;
-    for (size_t k = 0; k < 3; ++k) {
-      const uint32_t vertex = mesh.surface.triangles[f][k], row = offsets.corners[f][k];
-      uint32_t& known = row == kNone ? still[vertex] : at[row];
-      if (known == kNone || (row != kNone && vertex_of[row] != vertex)) {
-        known = static_cast<uint32_t>(result.positions.size());
-        result.positions.push_back(mesh.surface.positions[vertex]);
-        if (row != kNone) {
-          const float* const offset = &offsets.values[size_t{row} * offsets.components + 3 * t];
-          result.positions.back() += {offset[0], offset[1], offset[2]};
-          vertex_of[row] = vertex;
-        }
-      }
-      triangle[k] = known;
-    }
-    result.triangles.push_back(triangle);
+// The weights in a mix of the targets that an attribute has; empty where it has no part in it.
+std::vector<float> WeightsIn(const TargetMix& mix, const MeshAttribute& attribute) {
+  const auto first = mix.begin() + static_cast<std::ptrdiff_t>(ParseTargetChannels(attribute.name)->first);
+  std::vector<float> weights(first, first + attribute.components / 3);
+  const bool has_part = std::any_of(weights.begin(), weights.end(), [](float w) { return w != 0.0f; });
+  return has_part ? weights : std::vector<float>();
+}
+
+Vec3f Offset(const MeshAttribute& offsets, uint32_t row, const std::vector<float>& weights) {
+  Vec3f sum;
+  for (size_t t = 0; t < weights.size(); ++t) {
+    const float* const offset = &offsets.values[size_t{row} * offsets.components + 3 * t];
+    if (weights[t] != 0.0f) sum += Vec3f{offset[0], offset[1], offset[2]} * weights[t];
   }
-  return result;
+  return sum;
+}
+
+// Moves the surface by an attribute's targets. Vertices where its offsets have seams become several.
+void Move(const MeshAttribute& offsets, const std::vector<float>& weights, TriangleMesh* surface) {
+  constexpr uint32_t kUnknown = kNone - 1;
+  const std::vector<Vec3f> before = surface->positions;
+  const auto moved = [&](uint32_t vertex, uint32_t row) { return row == kNone ? before[vertex] : before[vertex] + Offset(offsets, row, weights); };
+  std::vector<uint32_t> row_of(before.size(), kUnknown);
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> further;  // of vertices with a row other than that one
+  for (size_t f = 0; f < surface->triangles.size(); ++f) {
+    for (size_t k = 0; k < 3; ++k) {
+      uint32_t& vertex = surface->triangles[f][k];
+      const uint32_t row = offsets.corners[f][k];
+      if (row_of[vertex] == kUnknown) {
+        row_of[vertex] = row;
+        surface->positions[vertex] = moved(vertex, row);
+      } else if (row_of[vertex] != row) {
+        const auto [found, is_new] = further.try_emplace({vertex, row}, static_cast<uint32_t>(surface->positions.size()));
+        if (is_new) surface->positions.push_back(moved(vertex, row));
+        vertex = found->second;
+      }
+    }
+  }
+}
+
+TriangleMesh Morphed(const AttributedMesh& mesh, const TargetMix& mix) {
+  TriangleMesh surface = mesh.surface;
+  for (const MeshAttribute& attribute : mesh.attributes) {
+    if (!IsOfPositions(attribute)) continue;
+    if (const std::vector<float> weights = WeightsIn(mix, attribute); !weights.empty()) Move(attribute, weights, &surface);
+  }
+  return surface;
 }
 
 // Nothing but the targets' directions, an attribute for each.
@@ -113,7 +137,7 @@ void DropUpTo(double nothing, std::vector<float>* offsets) {
 
 StatusOr<MorphChannels> MorphChannels::Create(const FamilyMeter& plain,
                                               const std::vector<const std::vector<MorphTarget>*>& targets,
-                                              uint64_t texel_side) {
+                                              const std::vector<TargetMix>& mixes, uint64_t texel_side) {
   LACERTA_RETURN_IF_ERROR(plain.status());
   MorphChannels result;
   std::vector<MorphedPrimitive> originals;
@@ -135,7 +159,7 @@ StatusOr<MorphChannels> MorphChannels::Create(const FamilyMeter& plain,
       std::make_unique<const FamilyMeter>(PointersTo(result.primitives_), plain.error(), plain.attribute_targets(),
                                           texel_side, plain.texels_per_unit(), plain.skin());
   LACERTA_RETURN_IF_ERROR(result.meter_->status());
-  LACERTA_ASSIGN_OR_RETURN(result.positions_, MorphMeter::Create(originals));
+  LACERTA_ASSIGN_OR_RETURN(result.positions_, MorphMeter::Create(originals, mixes));
   const AttributedMesh directions = DirectionsApart(result.meter_->original());
   if (!directions.attributes.empty()) {
     LACERTA_ASSIGN_OR_RETURN(result.directions_,
@@ -152,25 +176,22 @@ Status MorphChannels::Measure(const AttributedMesh& mesh, uint64_t num_samples, 
   }
   size_t next = 0;  // of those apart
   for (size_t a = 0; a < mesh.attributes.size(); ++a) {
-    const MeshAttribute& attribute = mesh.attributes[a];
-    const size_t num_targets = attribute.components / 3;
+    if (!IsOfDirections(mesh.attributes[a])) continue;
     AttributeError& error = errors->attributes[a];
-    if (IsOfPositions(attribute)) {
-      double worst = 0.0;
-      for (size_t t = 0; t < num_targets; ++t) {
-        LACERTA_ASSIGN_OR_RETURN(
-            const double distance,
-            positions_->Distance(ParseTargetChannels(attribute.name)->first + t, Morphed(mesh, attribute, t),
-                                 std::max(num_samples / kShare, kFewest)));
-        worst = std::max(worst, distance);
-      }
-      error.rms = error.rms_99 = worst;
-    } else if (IsOfDirections(attribute)) {
-      error = apart.attributes[next];
-      for (size_t t = 1; t < num_targets; ++t) {
-        if (apart.attributes[next + t].rms_99 > error.rms_99) error = apart.attributes[next + t];
-      }
-      next += num_targets;
+    error = apart.attributes[next++];
+    for (size_t t = 1; t < mesh.attributes[a].components / 3; ++t, ++next) {
+      if (apart.attributes[next].rms_99 > error.rms_99) error = apart.attributes[next];
+    }
+  }
+  for (size_t a = 0; a < mesh.attributes.size(); ++a) {
+    if (IsOfPositions(mesh.attributes[a])) errors->attributes[a].rms = errors->attributes[a].rms_99 = 0.0;
+  }
+  for (size_t m = 0; m < positions_->mixes().size(); ++m) {
+    const TargetMix& mix = positions_->mixes()[m];
+    LACERTA_ASSIGN_OR_RETURN(const double distance, positions_->Distance(m, Morphed(mesh, mix), std::max(num_samples / kShare, kFewest)));
+    for (size_t a = 0; a < mesh.attributes.size(); ++a) {
+      AttributeError& error = errors->attributes[a];
+      if (IsOfPositions(mesh.attributes[a]) && !WeightsIn(mix, mesh.attributes[a]).empty()) error.rms = error.rms_99 = std::max(error.rms, distance);
     }
   }
   return Status();

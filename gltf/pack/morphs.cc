@@ -25,13 +25,15 @@ const Attribute* PositionOf(const MorphTarget& target) {
   return found == target.end() ? nullptr : &*found;
 }
 
-TriangleMesh Morphed(const std::vector<MorphedPrimitive>& primitives, size_t target) {
+TriangleMesh Morphed(const std::vector<MorphedPrimitive>& primitives, const TargetMix& mix) {
   TriangleMesh all;
   for (const MorphedPrimitive& one : primitives) {
     TriangleMesh surface = Surface(*one.primitive);
-    const Attribute* offsets = target < one.targets->size() ? PositionOf((*one.targets)[target]) : nullptr;
-    for (uint32_t v = 0; offsets != nullptr && v < surface.positions.size(); ++v) {
-      surface.positions[v] += {offsets->data.Float(v, 0), offsets->data.Float(v, 1), offsets->data.Float(v, 2)};
+    for (size_t t = 0; t < std::min(mix.size(), one.targets->size()); ++t) {
+      const Attribute* offsets = mix[t] == 0.0f ? nullptr : PositionOf((*one.targets)[t]);
+      for (uint32_t v = 0; offsets != nullptr && v < surface.positions.size(); ++v) {
+        surface.positions[v] += Vec3f{offsets->data.Float(v, 0), offsets->data.Float(v, 1), offsets->data.Float(v, 2)} * mix[t];
+      }
     }
     all = Together(std::move(all), surface);
   }
@@ -86,13 +88,18 @@ std::vector<MorphTarget> TakeTargets(const std::vector<MorphTarget>& like, doubl
   return targets;
 }
 
-StatusOr<MorphMeter> MorphMeter::Create(const std::vector<MorphedPrimitive>& originals) {
+StatusOr<MorphMeter> MorphMeter::Create(const std::vector<MorphedPrimitive>& originals, const std::vector<TargetMix>& mixes) {
   size_t num_targets = 0;
   for (const MorphedPrimitive& one : originals) num_targets = std::max(num_targets, one.targets->size());
   MorphMeter meter;
   for (size_t t = 0; t < num_targets; ++t) {
-    LACERTA_ASSIGN_OR_RETURN(SurfaceDistanceMeter target, SurfaceDistanceMeter::Create(Morphed(originals, t)));
-    meter.targets_.push_back(std::move(target));
+    meter.mixes_.emplace_back(num_targets);
+    meter.mixes_.back()[t] = 1.0f;
+  }
+  meter.mixes_.insert(meter.mixes_.end(), mixes.begin(), mixes.end());
+  for (const TargetMix& mix : meter.mixes_) {
+    LACERTA_ASSIGN_OR_RETURN(SurfaceDistanceMeter mixed, SurfaceDistanceMeter::Create(Morphed(originals, mix)));
+    meter.meters_.push_back(std::move(mixed));
   }
   return meter;
 }
@@ -100,16 +107,15 @@ StatusOr<MorphMeter> MorphMeter::Create(const std::vector<MorphedPrimitive>& ori
 StatusOr<double> MorphMeter::Worst(const std::vector<MorphedPrimitive>& stored) const {
   constexpr uint64_t kSamples = 30'000;
   double worst = 0.0;
-  for (size_t t = 0; t < targets_.size(); ++t) {
-    LACERTA_ASSIGN_OR_RETURN(const double distance, Distance(t, Morphed(stored, t), kSamples));
+  for (size_t m = 0; m < mixes_.size(); ++m) {
+    LACERTA_ASSIGN_OR_RETURN(const double distance, Distance(m, Morphed(stored, mixes_[m]), kSamples));
     worst = std::max(worst, distance);
   }
   return worst;
 }
 
-StatusOr<double> MorphMeter::Distance(size_t target, const TriangleMesh& morphed, uint64_t num_samples) const {
-  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance,
-                           targets_[target].Measure(morphed, SurfaceDistanceOptions::RmsOnly(num_samples)));
+StatusOr<double> MorphMeter::Distance(size_t mix, const TriangleMesh& morphed, uint64_t num_samples) const {
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, meters_[mix].Measure(morphed, SurfaceDistanceOptions::RmsOnly(num_samples)));
   return distance.Rms();
 }
 

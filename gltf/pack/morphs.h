@@ -12,6 +12,7 @@
 #include "lacerta/status.h"
 #include "lacerta/surface_distance.h"
 #include "pack/source.h"
+#include "pack/target_mixes.h"
 
 namespace lacerta {
 
@@ -34,17 +35,21 @@ struct MorphedPrimitive {
 
 class MorphMeter {
  public:
-  // Fails like SurfaceDistanceMeter.
-  static StatusOr<MorphMeter> Create(const std::vector<MorphedPrimitive>& originals);
+  // Looks at each target at weight 1 with all others at 0, and at `mixes` besides. Fails like SurfaceDistanceMeter.
+  static StatusOr<MorphMeter> Create(const std::vector<MorphedPrimitive>& originals, const std::vector<TargetMix>& mixes);
 
-  // d_S between the surfaces with one target at weight 1 and all others at 0, of the target where that is largest, mesh units.
+  // What is looked at: first one target after the other, as many as there are.
+  const std::vector<TargetMix>& mixes() const { return mixes_; }
+
+  // d_S between the surfaces in the mix where that is largest, mesh units.
   StatusOr<double> Worst(const std::vector<MorphedPrimitive>& stored) const;
 
-  // The same of a surface that is morphed already. target: one of the originals'.
-  StatusOr<double> Distance(size_t target, const TriangleMesh& morphed, uint64_t num_samples) const;
+  // The same of a surface that is morphed already, by one of `mixes`.
+  StatusOr<double> Distance(size_t mix, const TriangleMesh& morphed, uint64_t num_samples) const;
 
  private:
-  std::vector<SurfaceDistanceMeter> targets_;
+  std::vector<TargetMix> mixes_;
+  std::vector<SurfaceDistanceMeter> meters_;  // for each of them
 };
 
 // Morph targets in the order that the vertices of a primitive have after coding at a precision; empty where that order

@@ -34,7 +34,7 @@ SurfaceErrors ErrorsOf(const FamilyMeter& plain, const FamilyMeter& morphed, Sur
 
 StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
                                               const std::vector<const std::vector<MorphTarget>*>& targets,
-                                              uint64_t texel_side, const std::vector<double>& everywhere) {
+                                              const std::vector<TargetMix>& mixes, uint64_t texel_side, const std::vector<double>& everywhere) {
   constexpr double kNothing = 0.01;  // of the error: offsets below are none
   LACERTA_RETURN_IF_ERROR(meter.status());
   std::vector<Primitive> with_targets;
@@ -46,7 +46,7 @@ StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
   }
   const FamilyMeter morphed(PointersTo(with_targets), meter.error(), meter.attribute_targets(), texel_side,
                             meter.texels_per_unit(), meter.skin());
-  LACERTA_ASSIGN_OR_RETURN(const MorphMeter morph_meter, MorphMeter::Create(originals));
+  LACERTA_ASSIGN_OR_RETURN(const MorphMeter morph_meter, MorphMeter::Create(originals, mixes));
   MorphedFamily result;
   const auto round = [&](SimplifiedFamily simplified) -> StatusOr<RoundedFamily> {
     std::vector<std::vector<MorphTarget>> simplified_targets;

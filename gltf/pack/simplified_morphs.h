@@ -18,11 +18,11 @@ struct MorphedFamily {
 };
 
 // SimplifyFamily of primitives with these targets (parallel to the meter's primitives), whose offsets are simplified
-// with them and stay floats. With each of the targets at weight 1 the surface is within the meter's error. Fails like
-// SimplifyFamily and WithTargets.
+// with them and stay floats. With each of the targets at weight 1, and in each of the mixes, the surface is within the meter's error.
+// Fails like SimplifyFamily and WithTargets.
 StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
                                               const std::vector<const std::vector<MorphTarget>*>& targets,
-                                              uint64_t texel_side, const std::vector<double>& everywhere);
+                                              const std::vector<TargetMix>& mixes, uint64_t texel_side, const std::vector<double>& everywhere);
 
 }  // namespace lacerta
 

@@ -1,4 +1,4 @@
-// Balls with morph targets, and their surfaces with one target at weight 1.
+// Balls with morph targets, and their surfaces with some of them.
 #ifndef LACERTA_TESTS_GLTF_MORPHED_ASSET_H_
 #define LACERTA_TESTS_GLTF_MORPHED_ASSET_H_
 
@@ -21,6 +21,8 @@ struct HillOptions {
   bool normals = false;
   bool halved = false;  // two primitives that touch
   float bumps = 0;
+  bool in_one_place = false;    // all hills, so that they add up
+  std::vector<float> weights = {};  // that the mesh has by itself
 };
 
 inline std::vector<Vec3f> HillOffsets(const TriangleMesh& ball, int target) {
@@ -66,7 +68,7 @@ inline Bytes BallWithHills(const HillOptions& options = {}) {
     Json primitive = builder.Primitive(part), targets = Json::array();
     if (options.normals) primitive["attributes"]["NORMAL"] = builder.AddFloats(pick(normals), false);
     for (int t = 0; t < options.targets; ++t) {
-      const std::vector<Vec3f> offsets = HillOffsets(ball, t);
+      const std::vector<Vec3f> offsets = HillOffsets(ball, options.in_one_place ? 0 : t);
       Json target = {{"POSITION", builder.AddFloats(pick(offsets), true)}};
       if (options.normals) {
         std::vector<Vec3f> moved = ball.positions;
@@ -83,20 +85,33 @@ inline Bytes BallWithHills(const HillOptions& options = {}) {
   builder.document().json["materials"] =
       Json::array({{{"name", "red"}}});  // without numbers that might be an accessor's
   builder.AddMesh("ball", std::move(primitives));
+  if (!options.weights.empty()) builder.document().json["meshes"][0]["weights"] = options.weights;
   return builder.Glb();
 }
 
-// A primitive of the first mesh, unpacked, with one of its targets at weight 1; none: as it is.
-inline TriangleMesh MorphedSurface(const Bytes& plain, size_t primitive_index, std::optional<uint64_t> target) {
+// A primitive of the first mesh, unpacked, with its targets at these weights; as many as there are.
+inline TriangleMesh MixedSurface(const Bytes& plain, size_t primitive_index, const std::vector<float>& weights) {
   const GltfDocument document = ParseGltf(plain, "").value();
   const Json& json = PrimitiveAt(document, {0, primitive_index});
   TriangleMesh mesh = Surface(ReadPrimitive(document, json, {}).value());
-  if (!target.has_value()) return mesh;
-  const AccessorData offsets = ReadAccessor(document, json["targets"][*target]["POSITION"].get<uint64_t>()).value();
-  for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    mesh.positions[v] += {offsets.Float(v, 0), offsets.Float(v, 1), offsets.Float(v, 2)};
+  for (size_t t = 0; t < weights.size(); ++t) {
+    if (weights[t] == 0) continue;
+    const AccessorData offsets = ReadAccessor(document, json["targets"][t]["POSITION"].get<uint64_t>()).value();
+    for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
+      mesh.positions[v] += Vec3f{offsets.Float(v, 0), offsets.Float(v, 1), offsets.Float(v, 2)} * weights[t];
+    }
   }
   return mesh;
+}
+
+// With one of them at weight 1; none: as it is.
+inline TriangleMesh MorphedSurface(const Bytes& plain, size_t primitive_index, std::optional<uint64_t> target) {
+  std::vector<float> weights;
+  if (target.has_value()) {
+    weights.resize(*target + 1);
+    weights.back() = 1;
+  }
+  return MixedSurface(plain, primitive_index, weights);
 }
 
 }  // namespace lacerta::testing

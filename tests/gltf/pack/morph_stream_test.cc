@@ -57,6 +57,20 @@ TEST(MorphStream, HoldsItsErrorWithEachTarget) {
   EXPECT_GT(worst, 0.6 * target_error);
 }
 
+TEST(MorphStream, HoldsItsErrorInMixesThatTheAssetShows) {
+  const std::vector<float> mix(kTargets, 1.0f);
+  const auto error_in_targets = [&](const std::vector<float>& shown) {
+    const Bytes asset = testing::BallWithHills({44, 72, kTargets, false, true, 0.02f, true, shown});
+    const PackResult packed = PackFast(asset, LevelChoice::kAlways);
+    const Bytes unpacked = testing::UnpackedAt(packed.glb, std::nullopt);
+    const auto both = [&](const Bytes& plain) { return testing::Both(testing::MixedSurface(plain, 0, mix), testing::MixedSurface(plain, 1, mix)); };
+    return MeasureSurfaceDistance(both(asset), both(unpacked)).value().Rms() / packed.report.primitives[0].target_error;
+  };
+  EXPECT_LT(error_in_targets(mix), 1.02);
+  EXPECT_GT(error_in_targets(mix), 0.3);
+  EXPECT_GT(error_in_targets({}), 1.1);  // else they need not be looked at
+}
+
 TEST(MorphStream, NormalsOfTargetsAreHeld) {
   bool found = false;
   for (const AttributeReport& attribute : Packed().report.primitives[0].attributes) {

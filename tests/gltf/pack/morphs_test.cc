@@ -47,6 +47,23 @@ TEST(Morphs, AreSimplifiedWithTheirSurfaceWithinTheError) {
   EXPECT_LT(WorstError(asset, UnpackGltf(all.glb, {}).value().glb, kTargets, First), 1.02 * target);
 }
 
+// Hills one upon the other, and higher than their targets: what each is off adds up.
+TEST(Morphs, MixesThatTheAssetShowsAreHeldToo) {
+  const std::vector<float> mix(4, 4.0f);
+  PackOptions options;
+  options.encode.levels = LevelChoice::kNever;
+  const auto error_in_targets = [&](const std::vector<float>& shown) {
+    const Bytes asset = testing::BallWithHills({60, 100, 4, false, false, 0, true, shown});
+    const PackResult packed = PackGltf(asset, options).value();
+    const Bytes unpacked = UnpackGltf(packed.glb, {}).value().glb;
+    const auto distance = MeasureSurfaceDistance(testing::MixedSurface(asset, 0, mix), testing::MixedSurface(unpacked, 0, mix)).value();
+    return distance.Rms() / packed.report.primitives[0].target_error;
+  };
+  EXPECT_LT(error_in_targets(mix), 1.02);
+  EXPECT_GT(error_in_targets(mix), 0.3);
+  EXPECT_GT(error_in_targets({}), 1.1);  // else they need not be looked at
+}
+
 TEST(Morphs, OffsetsThatAreMostlyNothingAreSparse) {
   PackOptions options;
   options.simplify = false;
