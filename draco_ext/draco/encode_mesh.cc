@@ -12,6 +12,7 @@
 #include "draco/custom_form.h"
 #include "draco/decoded_distance.h"
 #include "draco/input_proxy.h"
+#include "draco/memory_plan.h"
 #include "draco/rate_control.h"
 #include "draco/search_effort.h"
 #include "draco/still_part.h"
@@ -19,6 +20,7 @@
 #include "draco/within_memory.h"
 #include "draco/zero_level_search.h"
 #include "geometry/bounding_box.h"
+#include "geometry/lean_tree.h"
 #include "geometry/triangle_tree.h"
 #include "lacerta/clean.h"
 #include "lacerta/codec.h"
@@ -231,11 +233,12 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
 // The surface at the target on its own connectivity, remeshed, or as a simplified mesh without levels, whichever is better. crowding: of
 // the mesh (TriangleTree); input: what is remeshed for it.
 StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, ProxiedInput* input, double crowding, const SurfaceDistanceMeter& meter,
-                                     const ResolvedTarget& target, const EncodeOptions& options, EncodeReport report) {
+                                     const ResolvedTarget& target, const EncodeOptions& options, const MemoryPlan& plan, EncodeReport report) {
   if (options.levels == LevelChoice::kNever) return Unsupported("no refinement levels were asked for");
   if (crowding > kMostCrowding) return Unsupported("too many triangles go through each other for a surface to be followed");
   if (options.progress) options.progress(0.0, "looking at the surface");
-  std::optional<ChosenStream> chosen = EncodeSubdivided(mesh, meter, target, options);
+  std::optional<ChosenStream> chosen;
+  if (plan.may_unsubdivide) chosen = EncodeSubdivided(mesh, meter, target, options);
   report.subdivided_input = chosen.has_value();
   std::optional<SimplerSurface> simpler;
   bool is_simpler = false;
@@ -261,26 +264,28 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, ProxiedInput* inp
   return FromZeroLevel(stream, report, ReasonForSimpler(stream, target));
 }
 
-StatusOr<EncodedMesh> Encode(const TriangleMesh& input, const EncodeOptions& options) {
-  LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(input));
-  const TriangleMesh& mesh = cleaned.mesh;
-  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget asked, ResolveTarget(options.target, mesh.positions.size(), BoundingBoxDiagonal(input)));
+// What a target asks for of a mesh, in the form and the layers that the options want.
+StatusOr<ResolvedTarget> TargetOf(const EncodeOptions& options, uint64_t num_vertices, double diagonal) {
+  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget asked, ResolveTarget(options.target, num_vertices, diagonal));
   if (options.quality_layers < 1 || options.quality_layers > kMostQualityLayers) {
     return InvalidArgument(std::to_string(options.quality_layers) + " quality layers; 1 to " + std::to_string(kMostQualityLayers) + " are possible");
   }
   ResolvedTarget target = LessForm(asked, options.form);
   target.quality_layers = options.quality_layers;
-  const double crowding = TriangleTree(mesh).Crowding();  // before the meter: each takes more memory than the mesh
-  // Against what came in: a triangle that is there twice counts twice for whoever measures the two files.
-  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(input));
+  return target;
+}
+
+// crowding: of the mesh; meter: of the input that it was cleaned from.
+StatusOr<EncodedMesh> EncodeCleaned(const TriangleMesh& mesh, const CleanReport& clean, double crowding, const SurfaceDistanceMeter& meter,
+                                    const ResolvedTarget& target, const EncodeOptions& options, const MemoryPlan& plan) {
   EncodeReport report;
-  report.clean = cleaned.report;
+  report.clean = clean;
   report.input_vertices = mesh.positions.size();
   report.input_triangles = mesh.triangles.size();
   report.diagonal = meter.diagonal();
 
-  ProxiedInput proxied(mesh, meter, target);
-  StatusOr<EncodedParts> encoded = EncodeSurface(mesh, &proxied, crowding, meter, target, options, report);
+  ProxiedInput proxied(mesh, meter, target, plan.proxy);
+  StatusOr<EncodedParts> encoded = EncodeSurface(mesh, &proxied, crowding, meter, target, options, plan, report);
   if (!encoded.ok()) {  // without refinement, then, with the reason
     if (options.progress) options.progress(0.1, "simplifying");
     LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, crowding > kMostCrowding ? CodeCrowdedInput(mesh, crowding, meter, target)
@@ -289,15 +294,47 @@ StatusOr<EncodedMesh> Encode(const TriangleMesh& input, const EncodeOptions& opt
     encoded = FromZeroLevel(std::move(zero), report, encoded.status().message() + miss);
   }
   EncodeReport& made = encoded.value().mesh.report;
-  if (!target.is_rate && made.levels.back().psnr < target.psnr) made.reason += ReasonInFloats(mesh, meter, target);
+  if (!target.is_rate && made.levels.back().psnr < target.psnr) {
+    made.reason += ReasonInFloats(mesh, meter, target);
+    if (proxied.is_coarse()) made.reason += "; the memory allowed holds the input to " + std::to_string(proxied.Mesh().triangles.size()) + " triangles";
+  }
   if (options.progress) options.progress(1.0, "done");
   return InForm(options.form, std::move(encoded).value());
+}
+
+StatusOr<EncodedMesh> EncodeUsual(const TriangleMesh& input, const EncodeOptions& options, const MemoryPlan& plan) {
+  LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(input));
+  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget target, TargetOf(options, cleaned.mesh.positions.size(), BoundingBoxDiagonal(input)));
+  const double crowding = TriangleTree(cleaned.mesh).Crowding();  // before the meter: each takes more memory than the mesh
+  // Against what came in: a triangle that is there twice counts twice for whoever measures the two files.
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(input));
+  return EncodeCleaned(cleaned.mesh, cleaned.report, crowding, meter, target, options, plan);
+}
+
+// The mesh is cleaned where it is, and measured without another copy.
+StatusOr<EncodedMesh> EncodeLean(TriangleMesh mesh, const EncodeOptions& options, const MemoryPlan& plan) {
+  const double diagonal = BoundingBoxDiagonal(mesh);
+  LACERTA_ASSIGN_OR_RETURN(const CleanReport report, CleanInPlace(&mesh));
+  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget target, TargetOf(options, mesh.positions.size(), diagonal));
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::CreateLean(mesh));
+  const double crowding = LeanTree(mesh).Crowding();
+  return EncodeCleaned(mesh, report, crowding, meter, target, options, plan);
 }
 
 }  // namespace
 
 StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& mesh, const EncodeOptions& options) {
-  return WithinMemory([&] { return Encode(mesh, options); });
+  return WithinMemory([&]() -> StatusOr<EncodedMesh> {
+    LACERTA_ASSIGN_OR_RETURN(const MemoryPlan plan, PlanMemory(mesh.positions.size(), mesh.triangles.size(), options.memory));
+    return plan.is_lean ? EncodeLean(mesh, options, plan) : EncodeUsual(mesh, options, plan);
+  });
+}
+
+StatusOr<EncodedMesh> EncodeMesh(TriangleMesh&& mesh, const EncodeOptions& options) {
+  return WithinMemory([&]() -> StatusOr<EncodedMesh> {
+    LACERTA_ASSIGN_OR_RETURN(const MemoryPlan plan, PlanMemory(mesh.positions.size(), mesh.triangles.size(), options.memory));
+    return plan.is_lean ? EncodeLean(std::move(mesh), options, plan) : EncodeUsual(mesh, options, plan);
+  });
 }
 
 }  // namespace lacerta

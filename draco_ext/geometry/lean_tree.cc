@@ -145,13 +145,6 @@ void LeanTree::TestFace(uint32_t face, Search* search) const {
 }
 
 double LeanTree::SquaredDistance(const Vec3f& p, uint32_t* hint) const {
-  struct Entry {
-    float squared_distance;
-    uint32_t node;
-    Range range;
-    int depth;
-  };
-  constexpr size_t kStackSize = 3 * 16 + 1;  // each of at most 15 levels leaves three children waiting
   Search search;
   search.p = Vec3Cast<double>(p);
   if (*hint < mesh_.triangles.size()) TestFace(*hint, &search);
@@ -182,6 +175,44 @@ double LeanTree::SquaredDistance(const Vec3f& p, uint32_t* hint) const {
   }
   *hint = search.face;
   return search.bound2;
+}
+
+// Faces whose boxes hold a point.
+uint64_t LeanTree::NumFacesAround(const Vec3f& point) const {
+  const Vec3f local = point - origin_;
+  const auto is_between = [](const Vec3f& p, const Vec3f& low, const Vec3f& high) {
+    return low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y && low.z <= p.z && p.z <= high.z;
+  };
+  uint64_t count = 0;
+  std::array<Entry, kStackSize> stack;
+  size_t size = 0;
+  stack[size++] = {0, 0, {0, static_cast<uint32_t>(faces_.size())}, 0};
+  while (size > 0) {
+    const Entry top = stack[--size];
+    if (top.depth == depth_) {
+      for (uint32_t slot = top.range.first; slot < top.range.last; ++slot) {
+        Box box;
+        for (const uint32_t v : mesh_.triangles[faces_[slot]]) box.Add(mesh_.positions[v]);
+        const Vec3f padding{padding_, padding_, padding_};
+        count += is_between(point, box.low - padding, box.high + padding) ? 1 : 0;
+      }
+      continue;
+    }
+    const Node& node = nodes_[top.node];
+    for (uint32_t k = 0; k < kWidth; ++k) {
+      const Vec3f low{node.low[0][k], node.low[1][k], node.low[2][k]}, high{node.high[0][k], node.high[1][k], node.high[2][k]};
+      if (is_between(local, low, high)) stack[size++] = {0, kWidth * top.node + k + 1, ChildOf(top.range, k), top.depth + 1};
+    }
+  }
+  return count;
+}
+
+double LeanTree::Crowding() const {
+  constexpr size_t kMostPoints = 256;
+  const size_t num_points = std::min(kMostPoints, faces_.size());
+  uint64_t faces = 0;
+  for (size_t i = 0; i < num_points; ++i) faces += NumFacesAround(CenterOf(mesh_, faces_[i * faces_.size() / num_points]));
+  return static_cast<double>(faces) / static_cast<double>(num_points);
 }
 
 }  // namespace lacerta

@@ -27,6 +27,10 @@ class LeanTree {
   // Squared distance of p, finite, to the mesh, computed in double. *hint: a face thought to be near p, or kNone; becomes the closest one.
   double SquaredDistance(const Vec3f& p, uint32_t* hint) const;
 
+  // The number of faces whose boxes hold the middle of a face, in the mean of some hundred: one or two for a surface, however large; of triangles that go
+  // through each other a share of all of them.
+  double Crowding() const;
+
   // All faces, in an order in which neighbors in the list are mostly neighbors in space.
   const std::vector<uint32_t>& faces_in_tree_order() const { return faces_; }
   const TriangleMesh& mesh() const { return mesh_; }
@@ -41,6 +45,14 @@ class LeanTree {
   struct Range {
     uint32_t first, last;  // slots of faces_
   };
+  struct Entry {  // of the stack of a query
+    float squared_distance;
+    uint32_t node;
+    Range range;
+    int depth;
+  };
+  // Each of at most 15 levels leaves three children waiting.
+  static constexpr size_t kStackSize = 3 * 15 + 2;
   struct Box;
   struct KeyedFace;
   struct Search;
@@ -49,6 +61,7 @@ class LeanTree {
   void Sort(KeyedFace* faces, size_t count, int depth) const;
   Box FillNode(uint32_t node, Range range, int depth);
   void TestFace(uint32_t face, Search* search) const;
+  uint64_t NumFacesAround(const Vec3f& point) const;
 
   const TriangleMesh& mesh_;
   Vec3f origin_;         // the middle of the mesh: boxes relative to it are tight however far the mesh is from zero

@@ -151,8 +151,8 @@ StatusOr<TriangleMesh> ReadSurface(const PackArguments& arguments, std::vector<s
 
 StatusOr<FileOutcome> PackStream(const PackArguments& arguments, const EncodeOptions& options) {
   std::vector<std::string> notes;
-  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ReadSurface(arguments, &notes));
-  const StatusOr<EncodedMesh> encoded = EncodeMesh(mesh, options);
+  LACERTA_ASSIGN_OR_RETURN(TriangleMesh mesh, ReadSurface(arguments, &notes));
+  const StatusOr<EncodedMesh> encoded = EncodeMesh(std::move(mesh), options);
   if (!encoded.ok()) return encoded.status().WithContext(arguments.input);
   LACERTA_RETURN_IF_ERROR(WriteOutput(arguments.output, encoded.value().stream));
   const EncodeReport& report = encoded.value().report;
@@ -264,7 +264,8 @@ int RunPack(PackArguments arguments) {
   if (!items.ok()) return Finish(items.status());
   const bool single = items.value().size() == 1;
   arguments.tables = single && !arguments.batch.json && items.value()[0].output != "-" && StdoutIsTerminal();
-  if (const uint64_t memory = arguments.memory != 0 ? arguments.memory : FreeMemory().value_or(0); memory != 0) HoldToMemory(memory);
+  const uint64_t memory = arguments.memory != 0 ? arguments.memory : FreeMemory().value_or(0);
+  if (memory != 0) HoldToMemory(memory);
   ProgressLine progress;
   EncodeOptions options;
   options.target = Target(arguments);
@@ -275,6 +276,7 @@ int RunPack(PackArguments arguments) {
                                                   : LevelChoice::kWhereTheyPay;
   options.mode = arguments.mode == "paper" ? EncodeMode::kPaper : EncodeMode::kDefault;
   options.effort = arguments.effort == "fast" ? Effort::kFast : arguments.effort == "best" ? Effort::kBest : Effort::kNormal;
+  options.memory = memory;
   if (single) options.progress = progress.Callback();
   return RunBatch(items.value(), arguments.batch,
                   [&](const BatchItem& item) { return PackFile(arguments, options, item); });
