@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -311,6 +312,21 @@ StatusOr<EncodedMesh> EncodeUsual(const TriangleMesh& input, const EncodeOptions
   return EncodeCleaned(cleaned.mesh, cleaned.report, crowding, meter, target, options, plan);
 }
 
+// As within the memory allowed; where allocations fail all the same, as within less of it.
+StatusOr<EncodedMesh> EncodeWithinLess(const TriangleMesh& mesh, const CleanReport& clean, double crowding, const SurfaceDistanceMeter& meter,
+                                       const ResolvedTarget& target, const EncodeOptions& options, MemoryPlan plan) {
+  constexpr double kLess = 0.8;
+  for (double memory = static_cast<double>(options.memory);; memory *= kLess) {
+    try {
+      return EncodeCleaned(mesh, clean, crowding, meter, target, options, plan);
+    } catch (const std::bad_alloc&) {
+      const StatusOr<MemoryPlan> next = PlanMemory(mesh.positions.size(), mesh.triangles.size(), static_cast<uint64_t>(kLess * memory));
+      if (options.memory == 0 || !next.ok()) throw;
+      plan = next.value();
+    }
+  }
+}
+
 // The mesh is cleaned where it is, and measured without another copy.
 StatusOr<EncodedMesh> EncodeLean(TriangleMesh mesh, const EncodeOptions& options, const MemoryPlan& plan) {
   const double diagonal = BoundingBoxDiagonal(mesh);
@@ -318,7 +334,7 @@ StatusOr<EncodedMesh> EncodeLean(TriangleMesh mesh, const EncodeOptions& options
   LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget target, TargetOf(options, mesh.positions.size(), diagonal));
   LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::CreateLean(mesh));
   const double crowding = LeanTree(mesh).Crowding();
-  return EncodeCleaned(mesh, report, crowding, meter, target, options, plan);
+  return EncodeWithinLess(mesh, report, crowding, meter, target, options, plan);
 }
 
 }  // namespace

@@ -22,9 +22,9 @@ struct InputProxyOptions {
   // What more triangles would take away from its distance, over what noise that simplification smooths away (error_floor.h) leaves of the
   // distance that the stream may have, at most.
   double share = 0.15;
-  // Where memory is short: no more than most_at_once triangles are simplified as a whole, and no more than these are handed on: so many stand for
-  // the input where it has more and no fewer are near enough.
-  uint32_t most_triangles = std::numeric_limits<uint32_t>::max();
+  // Where memory is short: no more than these are simplified as a whole, and no more than these are handed on: so many stand for the input where it
+  // has more and no fewer are near enough. The first are at least as many as the second.
+  uint32_t most_as_a_whole = std::numeric_limits<uint32_t>::max(), most_triangles = std::numeric_limits<uint32_t>::max();
 };
 
 // The input, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them, unless

@@ -125,8 +125,8 @@ void PrintPackReport(const PackArguments& arguments, const PackReport& report, u
 StatusOr<TriangleMesh> ReadSurface(const PackArguments& arguments, std::vector<std::string>* notes) {
   const std::string& path = arguments.input;
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadInput(path));
-  StatusOr<MeshFormat> format = DetectMeshFormat(path, bytes);
+  LACERTA_ASSIGN_OR_RETURN(const FileBytes bytes, OpenInput(path));
+  StatusOr<MeshFormat> format = DetectMeshFormat(path, bytes.span());
   if (!format.ok()) return format.status().WithContext(path);
   if (format.value() == MeshFormat::kGltf) {
     if (arguments.repair) return InvalidArgument(path + ": --repair mends glTF assets on their way into a .glb; pack into one");
@@ -173,7 +173,8 @@ StatusOr<FileOutcome> PackStream(const PackArguments& arguments, const EncodeOpt
 }
 
 StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& options, uint64_t* input_bytes) {
-  LACERTA_ASSIGN_OR_RETURN(Bytes bytes, ReadInput(arguments.input));
+  LACERTA_ASSIGN_OR_RETURN(FileBytes file, OpenInput(arguments.input));
+  const Span<const uint8_t> bytes = file.span();
   *input_bytes = bytes.size();
   const bool is_json = arguments.input == "-" && !bytes.empty() && bytes[0] == '{';
   StatusOr<MeshFormat> format = MeshFormat::kGltf;
@@ -181,10 +182,10 @@ StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& 
   if (!format.ok()) return format.status();
   if (format.value() == MeshFormat::kGltf) return PackGltf(bytes, options);
   const std::string name = std::filesystem::path(arguments.input).stem().string();
-  LACERTA_ASSIGN_OR_RETURN(FileMesh mesh, ParseFileMesh(bytes, format.value(), options.folder, arguments.repair));
-  bytes = Bytes();  // large meshes fill the memory
+  LACERTA_ASSIGN_OR_RETURN(FileMesh mesh, ParseFileMesh(file, format.value(), options.folder, arguments.repair));
+  file = FileBytes();  // large meshes fill the memory
   if (arguments.shape_only) mesh = ShapeOf(std::move(mesh));
-  return PackMesh(mesh, name, options);
+  return PackMesh(std::move(mesh), name, options);
 }
 
 // A relative URI of a file name: what is not safe in one is escaped.

@@ -68,7 +68,7 @@ struct EncodeOptions {
   int quality_layers = 1;
   // Bytes that encoding should do with, the mesh included; 0: no limit. Where they are fewer than the usual need, the input is followed by way of
   // a mesh of as few triangles as they allow, errors are measured to the input all the same, and subdivision of the input is not looked for.
-  // The stream depends on this number alone, not on what is free. Not a promise: allocations are not counted.
+  // Allocations are not counted; where one fails, less is tried. Else the stream depends on this number, not on what is free.
   uint64_t memory = 0;
   // Called now and then with the finished share (0..1) and what is being done; may be empty.
   std::function<void(double share, const char* stage)> progress;
