@@ -1,3 +1,5 @@
+#include "draco/encode_mesh.h"
+
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -13,7 +15,6 @@
 #include "draco/custom_form.h"
 #include "draco/decoded_distance.h"
 #include "draco/input_proxy.h"
-#include "draco/memory_plan.h"
 #include "draco/rate_control.h"
 #include "draco/search_effort.h"
 #include "draco/still_part.h"
@@ -315,19 +316,20 @@ StatusOr<EncodedMesh> EncodeUsual(const TriangleMesh& input, const EncodeOptions
 // As within the memory allowed; where allocations fail all the same, as within less of it.
 StatusOr<EncodedMesh> EncodeWithinLess(const TriangleMesh& mesh, const CleanReport& clean, double crowding, const SurfaceDistanceMeter& meter,
                                        const ResolvedTarget& target, const EncodeOptions& options, MemoryPlan plan) {
-  constexpr double kLess = 0.8;
-  for (double memory = static_cast<double>(options.memory);; memory *= kLess) {
+  const uint64_t num_vertices = mesh.positions.size(), num_triangles = mesh.triangles.size(), least = LeastMemory(num_vertices, num_triangles);
+  for (uint64_t memory = options.memory;;) {
     try {
       return EncodeCleaned(mesh, clean, crowding, meter, target, options, plan);
     } catch (const std::bad_alloc&) {
-      const StatusOr<MemoryPlan> next = PlanMemory(mesh.positions.size(), mesh.triangles.size(), static_cast<uint64_t>(kLess * memory));
-      if (options.memory == 0 || !next.ok()) throw;
-      plan = next.value();
+      if (memory <= least) throw;
     }
+    memory = std::max(least, memory * 2 / 3);
+    LACERTA_ASSIGN_OR_RETURN(plan, PlanMemory(num_vertices, num_triangles, memory));
   }
 }
 
-// The mesh is cleaned where it is, and measured without another copy.
+}  // namespace
+
 StatusOr<EncodedMesh> EncodeLean(TriangleMesh mesh, const EncodeOptions& options, const MemoryPlan& plan) {
   const double diagonal = BoundingBoxDiagonal(mesh);
   LACERTA_ASSIGN_OR_RETURN(const CleanReport report, CleanInPlace(&mesh));
@@ -336,8 +338,6 @@ StatusOr<EncodedMesh> EncodeLean(TriangleMesh mesh, const EncodeOptions& options
   const double crowding = LeanTree(mesh).Crowding();
   return EncodeWithinLess(mesh, report, crowding, meter, target, options, plan);
 }
-
-}  // namespace
 
 StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& mesh, const EncodeOptions& options) {
   return WithinMemory([&]() -> StatusOr<EncodedMesh> {

@@ -19,6 +19,9 @@ struct MemoryPlan {
 // where the input leaves no room for a mesh that could stand for it. It depends on these numbers alone.
 StatusOr<MemoryPlan> PlanMemory(uint64_t num_vertices, uint64_t num_triangles, uint64_t memory);
 
+// The fewest bytes that are planned with for inputs of more than 50,000 triangles.
+uint64_t LeastMemory(uint64_t num_vertices, uint64_t num_triangles);
+
 }  // namespace lacerta
 
 #endif  // LACERTA_DRACO_MEMORY_PLAN_H_

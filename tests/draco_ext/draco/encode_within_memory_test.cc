@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "bench/heap_meter.h"
+#include "draco/encode_mesh.h"
 #include "lacerta/codec.h"
 #include "lacerta/surface_distance.h"
+#include "shapes/base_meshes.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
@@ -17,11 +19,9 @@ namespace {
 
 using Kind = EncodeTarget::Kind;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
-// For inputs of 75,000 to 330,000 triangles: 50,000 or few more stand for them.
-constexpr uint64_t kLittle = 190'000'000;
-
-EncodeOptions OptionsFor(Kind kind, double value, uint64_t memory = kLittle) {
+EncodeOptions OptionsFor(Kind kind, double value, uint64_t memory = 0) {
   EncodeOptions options;
   options.target = {kind, value};
   options.effort = Effort::kFast;
@@ -29,6 +29,20 @@ EncodeOptions OptionsFor(Kind kind, double value, uint64_t memory = kLittle) {
   options.memory = memory;
   return options;
 }
+
+// As PlanMemory makes it, for inputs a tenth as large.
+MemoryPlan Tight() {
+  MemoryPlan plan;
+  plan.is_lean = true;
+  plan.may_unsubdivide = false;
+  plan.proxy.fewest_triangles = 3000;
+  plan.proxy.most_triangles = 6000;
+  plan.proxy.most_as_a_whole = 10'000;
+  plan.proxy.part_triangles = 4000;
+  return plan;
+}
+
+TriangleMesh Scan(float noise = 0.0005f) { return shapes::BumpySphere(5, 0.1f, noise); }  // 20,480 triangles
 
 TriangleMesh Together(TriangleMesh a, const TriangleMesh& b, const Vec3f& by) {
   const auto first = static_cast<uint32_t>(a.positions.size());
@@ -53,16 +67,16 @@ struct Case {
 };
 
 std::vector<Case> Cases() {
-  return {{"closed", shapes::BumpySphere(6, 0.1f, 0.0005f), 62, false},
-          {"bordered", shapes::GridWithBorder(200, 190, 0.3f), 70, true},
-          {"several components", Together(shapes::Torus(200, 100), shapes::BumpySphere(5, 0.2f), {3, 0, 0}), 62, false},
-          {"creased", shapes::TwoHoledPlate(40), 60, false}};
+  return {{"closed", Scan(), 58, false},
+          {"bordered", shapes::GridWithBorder(101, 90, 0.3f), 65, true},
+          {"several components", Together(shapes::Torus(100, 50), shapes::BumpySphere(4, 0.2f), {3, 0, 0}), 56, false},
+          {"creased", shapes::TwoHoledPlate(15), 60, false}};
 }
 
 TEST(EncodeWithinMemoryTest, KeepsPsnrFromBothSidesWithoutCracks) {
   for (const Case& c : Cases()) {
     SCOPED_TRACE(c.name);
-    const EncodedMesh encoded = EncodeMesh(c.mesh, OptionsFor(Kind::kPsnr, c.psnr)).value();
+    const EncodedMesh encoded = EncodeLean(c.mesh, OptionsFor(Kind::kPsnr, c.psnr), Tight()).value();
     const TriangleMesh decoded = DecodeMesh(encoded.stream, {}).value().mesh;
     // By the usual meter: what was reported was measured by the lean one.
     const SurfaceDistance distance = MeasureSurfaceDistance(c.mesh, decoded).value();
@@ -75,46 +89,49 @@ TEST(EncodeWithinMemoryTest, KeepsPsnrFromBothSidesWithoutCracks) {
     EXPECT_EQ(encoded.report.input_triangles, c.mesh.triangles.size());
     EXPECT_EQ(encoded.report.diagonal, BoundingBoxDiagonal(c.mesh));
     for (size_t level = 1; level < encoded.report.levels.size(); ++level) {
-      EXPECT_GE(encoded.report.levels[level].psnr, encoded.report.levels[level - 1].psnr - 0.1);
+      EXPECT_GE(encoded.report.levels[level].psnr, encoded.report.levels[level - 1].psnr - 0.5);
     }
   }
 }
 
 TEST(EncodeWithinMemoryTest, KeepsOtherTargets) {
-  const TriangleMesh mesh = shapes::BumpySphere(6, 0.1f, 0.0005f);
+  const TriangleMesh mesh = Scan();
   const double diagonal = BoundingBoxDiagonal(mesh);
-  const EncodedMesh bytes = EncodeMesh(mesh, OptionsFor(Kind::kBytes, 1500)).value();
-  EXPECT_LE(bytes.stream.size(), 1500u);
-  EXPECT_GE(bytes.stream.size(), 1470u);
+  const EncodedMesh bytes = EncodeLean(mesh, OptionsFor(Kind::kBytes, 800), Tight()).value();
+  EXPECT_LE(bytes.stream.size(), 800u);
+  EXPECT_GE(bytes.stream.size(), 784u);
   EXPECT_NEAR(bytes.report.levels.back().psnr, Psnr(MeasureSurfaceDistance(mesh, DecodeMesh(bytes.stream, {}).value().mesh).value().Rms(), diagonal), 0.05);
-  const EncodedMesh error = EncodeMesh(mesh, OptionsFor(Kind::kError, 0.001)).value();
-  EXPECT_LE(error.report.levels.back().error, 0.001 * diagonal);
-  EXPECT_GE(error.report.levels.back().error, 0.0009 * diagonal);
+  const EncodedMesh error = EncodeLean(mesh, OptionsFor(Kind::kError, 0.0015), Tight()).value();
+  EXPECT_LE(error.report.levels.back().error, 0.0015 * diagonal);
+  EXPECT_GE(error.report.levels.back().error, 0.00135 * diagonal);
 }
 
-// Bytes are about as many as without a limit.
 TEST(EncodeWithinMemoryTest, TakesHardlyMoreBytes) {
-  const TriangleMesh mesh = shapes::BumpySphere(6, 0.1f, 0.0005f);
-  const size_t within = EncodeMesh(mesh, OptionsFor(Kind::kPsnr, 60)).value().stream.size();
-  const size_t usual = EncodeMesh(mesh, OptionsFor(Kind::kPsnr, 60, 0)).value().stream.size();
+  const TriangleMesh mesh = shapes::WithEdgeFlipped(Scan(), 1000);  // which is not a subdivided one
+  const size_t within = EncodeLean(mesh, OptionsFor(Kind::kPsnr, 55), Tight()).value().stream.size();
+  const size_t usual = EncodeMesh(mesh, OptionsFor(Kind::kPsnr, 55)).value().stream.size();
   EXPECT_NE(within, usual);  // it went another way
   EXPECT_LE(within, usual + usual / 8);
   EXPECT_GE(within, usual - usual / 8);
 }
 
 TEST(EncodeWithinMemoryTest, DoesNotDependOnTheNumberOfThreads) {
-  const TriangleMesh mesh = shapes::BumpySphere(6, 0.1f, 0.0005f);
-  const Bytes many = EncodeMesh(mesh, OptionsFor(Kind::kPsnr, 55)).value().stream;
+  const Bytes many = EncodeLean(Scan(), OptionsFor(Kind::kPsnr, 50), Tight()).value().stream;
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  EXPECT_EQ(EncodeMesh(mesh, OptionsFor(Kind::kPsnr, 55)).value().stream, many);
-  EXPECT_EQ(EncodeMesh(TriangleMesh(mesh), OptionsFor(Kind::kPsnr, 55)).value().stream, many);  // as one that may be used up
+  EXPECT_EQ(EncodeLean(Scan(), OptionsFor(Kind::kPsnr, 50), Tight()).value().stream, many);
 }
 
-// What so few triangles cannot follow is told, with the reason, not promised: noise beyond the target.
+// What so few triangles cannot follow is told, with the reason, not promised.
 TEST(EncodeWithinMemoryTest, TellsWhereMemoryIsTooLittleForTheTarget) {
-  const EncodedMesh encoded = EncodeMesh(shapes::BumpySphere(6, 0.1f, 0.003f), OptionsFor(Kind::kPsnr, 75)).value();
-  EXPECT_LT(encoded.report.levels.back().psnr, 75);
+  MemoryPlan plan = Tight();
+  plan.proxy.fewest_triangles = 200;
+  plan.proxy.most_triangles = 500;
+  const EncodedMesh encoded = EncodeLean(Scan(), OptionsFor(Kind::kPsnr, 65), plan).value();
+  EXPECT_LT(encoded.report.levels.back().psnr, 65);
   EXPECT_THAT(encoded.report.reason, HasSubstr("the memory allowed holds the input to"));
+  const EncodedMesh enough = EncodeLean(Scan(), OptionsFor(Kind::kPsnr, 45), plan).value();
+  EXPECT_GE(enough.report.levels.back().psnr, 45);
+  EXPECT_THAT(enough.report.reason, Not(HasSubstr("the memory allowed")));
 }
 
 TEST(EncodeWithinMemoryTest, IsRefusedWhereNothingCouldStandForTheInput) {
@@ -124,16 +141,19 @@ TEST(EncodeWithinMemoryTest, IsRefusedWhereNothingCouldStandForTheInput) {
 }
 
 #ifdef LACERTA_HEAP_METER
+// Of encoding a mesh that may be used up.
 size_t PeakOf(const TriangleMesh& mesh, uint64_t memory) {
   TriangleMesh input = mesh;
   ResetHeapPeak();
   const size_t before = HeapInUse();
-  EXPECT_TRUE(EncodeMesh(std::move(input), OptionsFor(Kind::kPsnr, 62, memory)).ok());
+  EXPECT_TRUE(EncodeMesh(std::move(input), OptionsFor(Kind::kPsnr, 55, memory)).ok());
   return HeapPeak() - before;
 }
 
+// The input itself is left out of the figures: it is there before.
 TEST(EncodeWithinMemoryTest, TakesNoMoreThanIsAllowed) {
-  const TriangleMesh mesh = shapes::BumpySphere(7, 0.1f, 0.0005f);  // 327,680 triangles
+  constexpr uint64_t kLittle = 190'000'000;
+  const TriangleMesh mesh = shapes::WithEdgeFlipped(shapes::BumpySphere(7, 0.1f, 0.0005f), 1000);  // 327,680 triangles
   const size_t usual = PeakOf(mesh, 0), within = PeakOf(mesh, kLittle);
   EXPECT_GT(usual, kLittle);
   EXPECT_LT(within, kLittle);
@@ -142,13 +162,14 @@ TEST(EncodeWithinMemoryTest, TakesNoMoreThanIsAllowed) {
 
 // Where the heap gives less than was planned with, another try with less of it succeeds.
 TEST(EncodeWithinMemoryTest, TriesWithLessWhereAllocationsFail) {
-  const TriangleMesh mesh = shapes::BumpySphere(7, 0.1f, 0.0005f);
-  const size_t usual = PeakOf(mesh, 500'000'000);
-  SetHeapLimit(HeapInUse() + usual * 3 / 4);
-  const StatusOr<EncodedMesh> encoded = EncodeMesh(mesh, OptionsFor(Kind::kPsnr, 62, 500'000'000));
+  constexpr uint64_t kMuch = 260'000'000;
+  const TriangleMesh mesh = shapes::WithEdgeFlipped(shapes::BumpySphere(6, 0.1f, 0.003f), 1000);
+  const size_t most = PeakOf(mesh, kMuch);  // for all of the input simplified as a whole
+  SetHeapLimit(HeapInUse() + most * 9 / 10);
+  const StatusOr<EncodedMesh> encoded = EncodeMesh(TriangleMesh(mesh), OptionsFor(Kind::kPsnr, 55, kMuch));
   SetHeapLimit(0);
   ASSERT_TRUE(encoded.ok()) << encoded.status().message();
-  EXPECT_GE(encoded.value().report.levels.back().psnr, 62);
+  EXPECT_GE(encoded.value().report.levels.back().psnr, 55);
 }
 #endif
 
