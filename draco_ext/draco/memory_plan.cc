@@ -14,7 +14,7 @@ constexpr uint64_t kDense = 2'000'000;
 constexpr uint64_t kAny = 80'000'000, kParts = 100'000'000;
 constexpr uint64_t kPerUsual = 127, kPerLean = 11, kPerReduced = 18;
 // Of a triangle of a run of simplification, of what is remeshed, and of a mesh whose subdivision is looked for.
-constexpr uint64_t kPerSimplified = 500, kPerRemeshed = 2200, kPerSubdivided = 250;
+constexpr uint64_t kPerSimplified = 600, kPerRemeshed = 3000, kPerSubdivided = 250;
 // What stands for an input has at least so many triangles, and takes so many bytes: fewer would not take less memory in all.
 constexpr uint64_t kFewest = 50'000, kLeastToRemesh = 90'000'000;
 
