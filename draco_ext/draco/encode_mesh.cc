@@ -339,18 +339,30 @@ StatusOr<EncodedMesh> EncodeLean(TriangleMesh mesh, const EncodeOptions& options
   return EncodeWithinLess(mesh, report, crowding, meter, target, options, plan);
 }
 
+namespace {
+
+// mesh: as it may be taken, const or to be used up.
+template <typename Mesh>
+StatusOr<EncodedMesh> EncodeAsPlanned(Mesh&& mesh, const EncodeOptions& options) {
+  LACERTA_ASSIGN_OR_RETURN(const MemoryPlan plan, PlanMemory(mesh.positions.size(), mesh.triangles.size(), options.memory));
+  if (!plan.is_lean) {
+    try {
+      return EncodeUsual(mesh, options, plan);
+    } catch (const std::bad_alloc&) {
+      if (options.memory == 0) throw;
+    }
+  }
+  return EncodeLean(std::forward<Mesh>(mesh), options, plan);
+}
+
+}  // namespace
+
 StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& mesh, const EncodeOptions& options) {
-  return WithinMemory([&]() -> StatusOr<EncodedMesh> {
-    LACERTA_ASSIGN_OR_RETURN(const MemoryPlan plan, PlanMemory(mesh.positions.size(), mesh.triangles.size(), options.memory));
-    return plan.is_lean ? EncodeLean(mesh, options, plan) : EncodeUsual(mesh, options, plan);
-  });
+  return WithinMemory([&] { return EncodeAsPlanned(mesh, options); });
 }
 
 StatusOr<EncodedMesh> EncodeMesh(TriangleMesh&& mesh, const EncodeOptions& options) {
-  return WithinMemory([&]() -> StatusOr<EncodedMesh> {
-    LACERTA_ASSIGN_OR_RETURN(const MemoryPlan plan, PlanMemory(mesh.positions.size(), mesh.triangles.size(), options.memory));
-    return plan.is_lean ? EncodeLean(std::move(mesh), options, plan) : EncodeUsual(mesh, options, plan);
-  });
+  return WithinMemory([&] { return EncodeAsPlanned(std::move(mesh), options); });
 }
 
 }  // namespace lacerta
