@@ -16,7 +16,7 @@ constexpr uint64_t kPerUsual = 127, kPerLean = 11, kPerReduced = 18;
 // Of a triangle of a run of simplification, of what is remeshed, and of a mesh whose subdivision is looked for.
 constexpr uint64_t kPerSimplified = 600, kPerRemeshed = 3000, kPerSubdivided = 250;
 // What stands for an input has at least so many triangles, and takes so many bytes: fewer would not take less memory in all.
-constexpr uint64_t kFewest = 50'000, kLeastToRemesh = 90'000'000;
+constexpr uint64_t kFewest = 50'000, kLeastToRemesh = 115'000'000;
 
 uint64_t BytesOf(uint64_t num_vertices, uint64_t num_triangles) { return sizeof(Vec3f) * num_vertices + sizeof(Triangle) * num_triangles; }
 

@@ -137,7 +137,7 @@ TEST(EncodeWithinMemoryTest, TellsWhereMemoryIsTooLittleForTheTarget) {
 TEST(EncodeWithinMemoryTest, IsRefusedWhereNothingCouldStandForTheInput) {
   const StatusOr<EncodedMesh> encoded = EncodeMesh(shapes::BumpySphere(6), OptionsFor(Kind::kPsnr, 60, 150'000'000));
   EXPECT_EQ(encoded.status().code(), StatusCode::kLimitExceeded);
-  EXPECT_THAT(encoded.status().message(), HasSubstr("81920 triangles take at least 173 MB, of which 150 are allowed"));
+  EXPECT_THAT(encoded.status().message(), HasSubstr("81920 triangles take at least 198 MB, of which 150 are allowed"));
 }
 
 #ifdef LACERTA_HEAP_METER
@@ -146,13 +146,13 @@ size_t PeakOf(const TriangleMesh& mesh, uint64_t memory) {
   TriangleMesh input = mesh;
   ResetHeapPeak();
   const size_t before = HeapInUse();
-  EXPECT_TRUE(EncodeMesh(std::move(input), OptionsFor(Kind::kPsnr, 55, memory)).ok());
+  EXPECT_TRUE(EncodeMesh(std::move(input), OptionsFor(Kind::kPsnr, 45, memory)).ok());
   return HeapPeak() - before;
 }
 
 // The input itself is left out of the figures: it is there before.
 TEST(EncodeWithinMemoryTest, TakesNoMoreThanIsAllowed) {
-  constexpr uint64_t kLittle = 190'000'000;
+  constexpr uint64_t kLittle = 230'000'000;
   const TriangleMesh mesh = shapes::WithEdgeFlipped(shapes::BumpySphere(7, 0.1f, 0.0005f), 1000);  // 327,680 triangles
   const size_t usual = PeakOf(mesh, 0), within = PeakOf(mesh, kLittle);
   EXPECT_GT(usual, kLittle);
@@ -162,14 +162,14 @@ TEST(EncodeWithinMemoryTest, TakesNoMoreThanIsAllowed) {
 
 // Where the heap gives less than was planned with, another try with less of it succeeds.
 TEST(EncodeWithinMemoryTest, TriesWithLessWhereAllocationsFail) {
-  constexpr uint64_t kMuch = 260'000'000;
-  const TriangleMesh mesh = shapes::WithEdgeFlipped(shapes::BumpySphere(6, 0.1f, 0.003f), 1000);
+  constexpr uint64_t kMuch = 800'000'000;
+  const TriangleMesh mesh = shapes::WithEdgeFlipped(shapes::BumpySphere(7, 0.1f, 0.003f), 1000);
   const size_t most = PeakOf(mesh, kMuch);  // for all of the input simplified as a whole
   SetHeapLimit(HeapInUse() + most * 9 / 10);
-  const StatusOr<EncodedMesh> encoded = EncodeMesh(TriangleMesh(mesh), OptionsFor(Kind::kPsnr, 55, kMuch));
+  const StatusOr<EncodedMesh> encoded = EncodeMesh(TriangleMesh(mesh), OptionsFor(Kind::kPsnr, 45, kMuch));
   SetHeapLimit(0);
   ASSERT_TRUE(encoded.ok()) << encoded.status().message();
-  EXPECT_GE(encoded.value().report.levels.back().psnr, 55);
+  EXPECT_GE(encoded.value().report.levels.back().psnr, 45);
 }
 #endif
 
