@@ -1,7 +1,5 @@
 #include "draco/encode_mesh.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,6 +20,7 @@
 #include "draco/within_memory.h"
 #include "draco/zero_level_search.h"
 #include "geometry/bounding_box.h"
+#include "geometry/for_each_branch.h"
 #include "geometry/lean_tree.h"
 #include "geometry/triangle_tree.h"
 #include "lacerta/clean.h"
@@ -198,18 +197,16 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
   const InputSurface surface(parts.refined, parts.topology);
   const SearchEffort effort = EffortOf(options.effort);
   std::vector<CollapseHistory> histories;
-  tbb::parallel_invoke(
-      [&] {
-        const double lambda = UsualLambda(psnr, meter.diagonal());
-        if (effort.every_shape) {
-          histories = ShapedHistories(surface, parts.topology);
-        } else {
-          histories.push_back(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), lambda, options.mode, effort.shape_sizes));
-        }
-      },
-      [&] {
-        if (options.levels == LevelChoice::kWhereTheyPay) simpler->emplace(mesh, meter, target, effort);
-      });
+  ForEachBranch(2, [&](size_t branch) {
+    const double lambda = UsualLambda(psnr, meter.diagonal());
+    if (branch == 1) {
+      if (options.levels == LevelChoice::kWhereTheyPay) simpler->emplace(mesh, meter, target, effort);
+    } else if (effort.every_shape) {
+      histories = ShapedHistories(surface, parts.topology);
+    } else {
+      histories.push_back(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), lambda, options.mode, effort.shape_sizes));
+    }
+  });
   const StillPart still = PrepareStillPart(parts.still, parts.refined, distance);
   *report = {parts.refined_components,       parts.still_components, still.hidden_components,
              parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices,

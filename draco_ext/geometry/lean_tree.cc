@@ -1,13 +1,12 @@
 #include "geometry/lean_tree.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cfloat>
 #include <cmath>
 
 #include "geometry/closest_on_triangle.h"
+#include "geometry/for_each_branch.h"
 
 namespace lacerta {
 
@@ -58,7 +57,7 @@ void ForHalves(size_t count, const Function& function) {
   if (count < kParallelSize) {
     for (int half = 0; half < 2; ++half) function(half);
   } else {
-    tbb::parallel_for(0, 2, function);
+    ForEachBranch(2, [&](size_t half) { function(static_cast<int>(half)); });
   }
 }
 
