@@ -17,8 +17,9 @@ LIBRARIES = {
     "tiny_gltf.h": {"gltf", "samples"},
     "CLI": {"plugin"},
     "lacerta.h": {"plugin", "samples"},
-    "unistd.h": {"plugin"},
-    "sys": {"plugin"},
+    "fcntl.h": {"gltf"},
+    "unistd.h": {"gltf", "plugin"},
+    "sys": {"gltf", "plugin"},
 }
 
 # The layer that an installed header belongs to. decoder.h and attributed_*.h are with `common`: they hold what both sides share, the base

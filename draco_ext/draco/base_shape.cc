@@ -1,7 +1,5 @@
 #include "draco/base_shape.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +12,7 @@
 
 #include "encoder/step_law.h"
 #include "encoder/surface_target.h"
+#include "geometry/for_each_branch.h"
 #include "remesh/base_domain.h"
 #include "remesh/decimate.h"
 #include "remesh/piercing.h"
@@ -43,7 +42,7 @@ double LogDetailBits(const InputSurface& surface, const CollapseHistory& history
 
 std::vector<CollapseHistory> ShapedHistories(const InputSurface& surface, const Topology& topology) {
   std::array<std::optional<CollapseHistory>, kAspectPowers.size()> made;
-  tbb::parallel_for(size_t{0}, made.size(), [&](size_t h) {
+  ForEachBranch(made.size(), [&](size_t h) {
     DecimateOptions options;
     options.aspect_power = kAspectPowers[h];
     made[h].emplace(Decimate(surface.mesh(), topology, options));
@@ -63,7 +62,7 @@ CollapseHistory BestShapedHistory(const InputSurface& surface, const Topology& t
   }
   std::vector<CollapseHistory> histories = ShapedHistories(surface, topology);
   std::vector<double> bits(histories.size() * sizes.size());
-  tbb::parallel_for(size_t{0}, bits.size(), [&](size_t i) {
+  ForEachBranch(bits.size(), [&](size_t i) {
     bits[i] = LogDetailBits(surface, histories[i / sizes.size()], typical_base * sizes[i % sizes.size()], lambda, mode);
   });
   size_t best = 0;

@@ -1,8 +1,9 @@
-#include <tbb/parallel_invoke.h>
+#include "draco/encode_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +20,8 @@
 #include "draco/within_memory.h"
 #include "draco/zero_level_search.h"
 #include "geometry/bounding_box.h"
+#include "geometry/for_each_branch.h"
+#include "geometry/lean_tree.h"
 #include "geometry/triangle_tree.h"
 #include "lacerta/clean.h"
 #include "lacerta/codec.h"
@@ -194,18 +197,16 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
   const InputSurface surface(parts.refined, parts.topology);
   const SearchEffort effort = EffortOf(options.effort);
   std::vector<CollapseHistory> histories;
-  tbb::parallel_invoke(
-      [&] {
-        const double lambda = UsualLambda(psnr, meter.diagonal());
-        if (effort.every_shape) {
-          histories = ShapedHistories(surface, parts.topology);
-        } else {
-          histories.push_back(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), lambda, options.mode, effort.shape_sizes));
-        }
-      },
-      [&] {
-        if (options.levels == LevelChoice::kWhereTheyPay) simpler->emplace(mesh, meter, target, effort);
-      });
+  ForEachBranch(2, [&](size_t branch) {
+    const double lambda = UsualLambda(psnr, meter.diagonal());
+    if (branch == 1) {
+      if (options.levels == LevelChoice::kWhereTheyPay) simpler->emplace(mesh, meter, target, effort);
+    } else if (effort.every_shape) {
+      histories = ShapedHistories(surface, parts.topology);
+    } else {
+      histories.push_back(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), lambda, options.mode, effort.shape_sizes));
+    }
+  });
   const StillPart still = PrepareStillPart(parts.still, parts.refined, distance);
   *report = {parts.refined_components,       parts.still_components, still.hidden_components,
              parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices,
@@ -231,11 +232,12 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
 // The surface at the target on its own connectivity, remeshed, or as a simplified mesh without levels, whichever is better. crowding: of
 // the mesh (TriangleTree); input: what is remeshed for it.
 StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, ProxiedInput* input, double crowding, const SurfaceDistanceMeter& meter,
-                                     const ResolvedTarget& target, const EncodeOptions& options, EncodeReport report) {
+                                     const ResolvedTarget& target, const EncodeOptions& options, const MemoryPlan& plan, EncodeReport report) {
   if (options.levels == LevelChoice::kNever) return Unsupported("no refinement levels were asked for");
   if (crowding > kMostCrowding) return Unsupported("too many triangles go through each other for a surface to be followed");
   if (options.progress) options.progress(0.0, "looking at the surface");
-  std::optional<ChosenStream> chosen = EncodeSubdivided(mesh, meter, target, options);
+  std::optional<ChosenStream> chosen;
+  if (plan.may_unsubdivide) chosen = EncodeSubdivided(mesh, meter, target, options);
   report.subdivided_input = chosen.has_value();
   std::optional<SimplerSurface> simpler;
   bool is_simpler = false;
@@ -261,26 +263,28 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, ProxiedInput* inp
   return FromZeroLevel(stream, report, ReasonForSimpler(stream, target));
 }
 
-StatusOr<EncodedMesh> Encode(const TriangleMesh& input, const EncodeOptions& options) {
-  LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(input));
-  const TriangleMesh& mesh = cleaned.mesh;
-  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget asked, ResolveTarget(options.target, mesh.positions.size(), BoundingBoxDiagonal(input)));
+// What a target asks for of a mesh, in the form and the layers that the options want.
+StatusOr<ResolvedTarget> TargetOf(const EncodeOptions& options, uint64_t num_vertices, double diagonal) {
+  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget asked, ResolveTarget(options.target, num_vertices, diagonal));
   if (options.quality_layers < 1 || options.quality_layers > kMostQualityLayers) {
     return InvalidArgument(std::to_string(options.quality_layers) + " quality layers; 1 to " + std::to_string(kMostQualityLayers) + " are possible");
   }
   ResolvedTarget target = LessForm(asked, options.form);
   target.quality_layers = options.quality_layers;
-  const double crowding = TriangleTree(mesh).Crowding();  // before the meter: each takes more memory than the mesh
-  // Against what came in: a triangle that is there twice counts twice for whoever measures the two files.
-  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(input));
+  return target;
+}
+
+// crowding: of the mesh; meter: of the input that it was cleaned from.
+StatusOr<EncodedMesh> EncodeCleaned(const TriangleMesh& mesh, const CleanReport& clean, double crowding, const SurfaceDistanceMeter& meter,
+                                    const ResolvedTarget& target, const EncodeOptions& options, const MemoryPlan& plan) {
   EncodeReport report;
-  report.clean = cleaned.report;
+  report.clean = clean;
   report.input_vertices = mesh.positions.size();
   report.input_triangles = mesh.triangles.size();
   report.diagonal = meter.diagonal();
 
-  ProxiedInput proxied(mesh, meter, target);
-  StatusOr<EncodedParts> encoded = EncodeSurface(mesh, &proxied, crowding, meter, target, options, report);
+  ProxiedInput proxied(mesh, meter, target, plan.proxy);
+  StatusOr<EncodedParts> encoded = EncodeSurface(mesh, &proxied, crowding, meter, target, options, plan, report);
   if (!encoded.ok()) {  // without refinement, then, with the reason
     if (options.progress) options.progress(0.1, "simplifying");
     LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, crowding > kMostCrowding ? CodeCrowdedInput(mesh, crowding, meter, target)
@@ -289,15 +293,73 @@ StatusOr<EncodedMesh> Encode(const TriangleMesh& input, const EncodeOptions& opt
     encoded = FromZeroLevel(std::move(zero), report, encoded.status().message() + miss);
   }
   EncodeReport& made = encoded.value().mesh.report;
-  if (!target.is_rate && made.levels.back().psnr < target.psnr) made.reason += ReasonInFloats(mesh, meter, target);
+  if (!target.is_rate && made.levels.back().psnr < target.psnr) {
+    made.reason += ReasonInFloats(mesh, meter, target);
+    if (proxied.is_coarse()) made.reason += "; the memory allowed holds the input to " + std::to_string(proxied.Mesh().triangles.size()) + " triangles";
+  }
   if (options.progress) options.progress(1.0, "done");
   return InForm(options.form, std::move(encoded).value());
+}
+
+StatusOr<EncodedMesh> EncodeUsual(const TriangleMesh& input, const EncodeOptions& options, const MemoryPlan& plan) {
+  LACERTA_ASSIGN_OR_RETURN(const CleanedMesh cleaned, Clean(input));
+  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget target, TargetOf(options, cleaned.mesh.positions.size(), BoundingBoxDiagonal(input)));
+  const double crowding = TriangleTree(cleaned.mesh).Crowding();  // before the meter: each takes more memory than the mesh
+  // Against what came in: a triangle that is there twice counts twice for whoever measures the two files.
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::Create(input));
+  return EncodeCleaned(cleaned.mesh, cleaned.report, crowding, meter, target, options, plan);
+}
+
+// As within the memory allowed; where allocations fail all the same, as within less of it.
+StatusOr<EncodedMesh> EncodeWithinLess(const TriangleMesh& mesh, const CleanReport& clean, double crowding, const SurfaceDistanceMeter& meter,
+                                       const ResolvedTarget& target, const EncodeOptions& options, MemoryPlan plan) {
+  const uint64_t num_vertices = mesh.positions.size(), num_triangles = mesh.triangles.size(), least = LeastMemory(num_vertices, num_triangles);
+  for (uint64_t memory = options.memory;;) {
+    try {
+      return EncodeCleaned(mesh, clean, crowding, meter, target, options, plan);
+    } catch (const std::bad_alloc&) {
+      if (memory <= least) throw;
+    }
+    memory = std::max(least, memory * 2 / 3);
+    LACERTA_ASSIGN_OR_RETURN(plan, PlanMemory(num_vertices, num_triangles, memory));
+  }
+}
+
+}  // namespace
+
+StatusOr<EncodedMesh> EncodeLean(TriangleMesh mesh, const EncodeOptions& options, const MemoryPlan& plan) {
+  const double diagonal = BoundingBoxDiagonal(mesh);
+  LACERTA_ASSIGN_OR_RETURN(const CleanReport report, CleanInPlace(&mesh));
+  LACERTA_ASSIGN_OR_RETURN(const ResolvedTarget target, TargetOf(options, mesh.positions.size(), diagonal));
+  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistanceMeter meter, SurfaceDistanceMeter::CreateLean(mesh));
+  const double crowding = LeanTree(mesh).Crowding();
+  return EncodeWithinLess(mesh, report, crowding, meter, target, options, plan);
+}
+
+namespace {
+
+// mesh: as it may be taken, const or to be used up.
+template <typename Mesh>
+StatusOr<EncodedMesh> EncodeAsPlanned(Mesh&& mesh, const EncodeOptions& options) {
+  LACERTA_ASSIGN_OR_RETURN(const MemoryPlan plan, PlanMemory(mesh.positions.size(), mesh.triangles.size(), options.memory));
+  if (!plan.is_lean) {
+    try {
+      return EncodeUsual(mesh, options, plan);
+    } catch (const std::bad_alloc&) {
+      if (options.memory == 0) throw;
+    }
+  }
+  return EncodeLean(std::forward<Mesh>(mesh), options, plan);
 }
 
 }  // namespace
 
 StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& mesh, const EncodeOptions& options) {
-  return WithinMemory([&] { return Encode(mesh, options); });
+  return WithinMemory([&] { return EncodeAsPlanned(mesh, options); });
+}
+
+StatusOr<EncodedMesh> EncodeMesh(TriangleMesh&& mesh, const EncodeOptions& options) {
+  return WithinMemory([&] { return EncodeAsPlanned(std::move(mesh), options); });
 }
 
 }  // namespace lacerta

@@ -2,9 +2,9 @@
 #ifndef LACERTA_DRACO_FOR_EACH_CANDIDATE_H_
 #define LACERTA_DRACO_FOR_EACH_CANDIDATE_H_
 
-#include <tbb/parallel_for.h>
-
 #include <cstddef>
+
+#include "geometry/for_each_branch.h"
 
 namespace lacerta {
 
@@ -18,7 +18,7 @@ inline bool AreInParallel(double num_input_vertices) { return num_input_vertices
 template <typename Work>
 void ForEachCandidate(double num_input_vertices, size_t count, const Work& work) {
   if (AreInParallel(num_input_vertices)) {
-    tbb::parallel_for(size_t{0}, count, work);
+    ForEachBranch(count, work);
   } else {
     for (size_t i = 0; i < count; ++i) work(i);
   }

@@ -41,17 +41,30 @@ class ProxySearch {
 }  // namespace
 
 std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                       const InputProxyOptions& options) {
-  const size_t most_triangles = cleaned.triangles.size() / 2;
-  if (options.fewest_triangles > most_triangles) return std::nullopt;
+                                       const InputProxyOptions& options, bool* is_coarse) {
+  const size_t num_triangles = cleaned.triangles.size(), half = num_triangles / 2;
+  const bool is_too_large = num_triangles > options.most_triangles;
+  if (is_coarse != nullptr) *is_coarse = false;
+  if (options.fewest_triangles > half && !is_too_large) return std::nullopt;
+  const size_t most = is_too_large ? options.most_triangles : half;
   const double psnr = TypicalPsnr(target, static_cast<double>(options.fewest_triangles) / 2);  // what bytes bring hardly depends on how dense the input is
   ProxySearch search(meter, DistanceOfPsnr(psnr, meter.diagonal()), options);
-  if (options.most_at_once <= most_triangles) {
-    const TriangleMesh reduced = SimplifyInParts(cleaned, options.most_at_once, options.part_triangles);
-    std::optional<TriangleMesh> proxy = search.FirstNearEnough(SimplificationSequence(reduced), std::min(reduced.triangles.size(), most_triangles));
+  const uint32_t most_at_once = std::min(options.most_at_once, options.most_as_a_whole);
+  if (most_at_once <= half && most_at_once < options.most_as_a_whole) {
+    const TriangleMesh reduced = SimplifyInParts(cleaned, most_at_once, options.part_triangles);
+    std::optional<TriangleMesh> proxy = search.FirstNearEnough(SimplificationSequence(reduced), std::min(reduced.triangles.size(), most));
     if (proxy) return proxy;
   }
-  return search.FirstNearEnough(SimplificationSequence(cleaned), most_triangles);
+  // All of it, or as much as memory allows.
+  TriangleMesh reduced;
+  const bool is_reduced = num_triangles > options.most_as_a_whole;
+  if (is_reduced) reduced = SimplifyInParts(cleaned, options.most_as_a_whole, options.part_triangles);
+  const SimplificationSequence sequence(is_reduced ? reduced : cleaned);
+  reduced = {};
+  std::optional<TriangleMesh> proxy = search.FirstNearEnough(sequence, std::min<size_t>(sequence.num_input_triangles(), most));
+  if (proxy || !is_too_large) return proxy;
+  if (is_coarse != nullptr) *is_coarse = true;
+  return sequence.MeshWith(options.most_triangles);
 }
 
 }  // namespace lacerta

@@ -4,6 +4,7 @@
 #define LACERTA_DRACO_INPUT_PROXY_H_
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "draco/candidate_search.h"
@@ -21,34 +22,43 @@ struct InputProxyOptions {
   // What more triangles would take away from its distance, over what noise that simplification smooths away (error_floor.h) leaves of the
   // distance that the stream may have, at most.
   double share = 0.15;
+  // Where memory is short: no more than these are simplified as a whole, and no more than these are handed on: so many stand for the input where it
+  // has more and no fewer are near enough. The first are at least as many as the second.
+  uint32_t most_as_a_whole = std::numeric_limits<uint32_t>::max(), most_triangles = std::numeric_limits<uint32_t>::max();
 };
 
-// The input, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them.
+// The input, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them, unless
+// there are more than most_triangles.
+//   is_coarse  may be null; whether it is farther from the input than the options allow, for want of triangles
 //   cleaned  what Clean returned of the input
 //   meter    of the input
 //   target   of the stream
 std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                       const InputProxyOptions& options = {});
+                                       const InputProxyOptions& options = {}, bool* is_coarse = nullptr);
 
 // What is remeshed and simplified: the input, or its proxy where there is one. What it refers to must outlive it.
 class ProxiedInput {
  public:
   // As for InputProxy.
-  ProxiedInput(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target)
-      : cleaned_(cleaned), meter_(meter), target_(target) {}
+  ProxiedInput(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, const InputProxyOptions& options)
+      : cleaned_(cleaned), meter_(meter), target_(target), options_(options) {}
 
   // Makes the proxy when first called. Not for several threads at a time.
   const TriangleMesh& Mesh() {
-    if (!is_made_) proxy_ = InputProxy(cleaned_, meter_, target_);
+    if (!is_made_) proxy_ = InputProxy(cleaned_, meter_, target_, options_, &is_coarse_);
     is_made_ = true;
     return proxy_ ? *proxy_ : cleaned_;
   }
+
+  // Of the proxy, once it was made: as for InputProxy.
+  bool is_coarse() const { return is_coarse_; }
 
  private:
   const TriangleMesh& cleaned_;
   const SurfaceDistanceMeter& meter_;
   const ResolvedTarget& target_;
-  bool is_made_ = false;
+  const InputProxyOptions options_;
+  bool is_made_ = false, is_coarse_ = false;
   std::optional<TriangleMesh> proxy_;
 };
 

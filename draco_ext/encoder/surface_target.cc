@@ -1,12 +1,11 @@
 #include "encoder/surface_target.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
 #include "encoder/local_model.h"
+#include "geometry/for_each_branch.h"
 #include "geometry/vertex_area_vectors.h"
 
 namespace lacerta {
@@ -93,8 +92,8 @@ SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
   if (mesh.mesh.num_levels > 0) topologies.push_back(RefineWithoutEdges(topologies.back()));
   std::vector<MidpointStencils> midpoints(mesh.mesh.num_levels);
   std::vector<StencilSpread> spreads(mesh.mesh.num_levels);
-  tbb::parallel_for(0, 2 * mesh.mesh.num_levels, [&](int i) {
-    const int level = i / 2;
+  ForEachBranch(2 * static_cast<size_t>(mesh.mesh.num_levels), [&](size_t i) {
+    const auto level = static_cast<int>(i / 2);
     if (i % 2 == 0) {
       midpoints[level] = MidpointStencils(topologies[level], stencils);
     } else {
@@ -111,7 +110,7 @@ SurfaceTarget MakeSurfaceTarget(const NormalMesh& mesh) {
   SurfaceTarget target{std::move(topologies), std::move(stencils), std::move(midpoints), std::move(spreads), mesh.mesh.positions, mesh.surface_normals,
                        std::move(areas),      std::move(masses),    {},                   mesh.piercing,      std::move(next_twin), mesh.keeps_vertices};
   target.curvatures.resize(target.topologies.size());
-  tbb::parallel_for(0, target.num_levels() + 1, [&](int level) { target.curvatures[level] = Curvatures(target, level); });
+  ForEachBranch(target.curvatures.size(), [&](size_t level) { target.curvatures[level] = Curvatures(target, static_cast<int>(level)); });
   return target;
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "geometry/vertex_ranges.h"
 #include "lacerta/surface_distance.h"
 
 namespace lacerta {
@@ -13,22 +14,36 @@ namespace {
 
 constexpr double kWidestCrack = 1.0 / (1 << 20);  // of the diagonal
 
-// The ends of edges that are not of two triangles, in ascending order.
-std::vector<uint32_t> BorderVertices(const std::vector<Triangle>& triangles) {
+constexpr uint64_t kEdgesAtATime = 4'000'000;
+
+// The edges whose lower end is in a range, once for each of their triangles, as (lower end) 2^32 + higher end, in ascending order.
+std::vector<uint64_t> EdgesOf(const std::vector<Triangle>& triangles, const VertexRange& range) {
   std::vector<uint64_t> edges;
-  edges.reserve(3 * triangles.size());
   for (const Triangle& t : triangles) {
     for (int k = 0; k < 3; ++k) {
       const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
-      edges.push_back(uint64_t{low} << 32 | high);
+      if (range.Has(low)) edges.push_back(uint64_t{low} << 32 | high);
     }
   }
   std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+// The ends of edges that are not of two triangles, in ascending order.
+std::vector<uint32_t> BorderVertices(const TriangleMesh& mesh) {
+  const auto for_each_edge = [&](const auto& visit) {
+    for (const Triangle& t : mesh.triangles) {
+      for (int k = 0; k < 3; ++k) visit(std::min(t[k], t[(k + 1) % 3]));
+    }
+  };
   std::vector<uint32_t> vertices;
-  for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    while (end < edges.size() && edges[end] == edges[begin]) ++end;
-    if (end - begin != 2)
-      vertices.insert(vertices.end(), {static_cast<uint32_t>(edges[begin] >> 32), static_cast<uint32_t>(edges[begin])});
+  for (const VertexRange& range : CutVertices(static_cast<uint32_t>(mesh.positions.size()), kEdgesAtATime, for_each_edge)) {
+    const std::vector<uint64_t> edges = EdgesOf(mesh.triangles, range);
+    for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+      while (end < edges.size() && edges[end] == edges[begin]) ++end;
+      if (end - begin != 2)
+        vertices.insert(vertices.end(), {static_cast<uint32_t>(edges[begin] >> 32), static_cast<uint32_t>(edges[begin])});
+    }
   }
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -83,7 +98,7 @@ class NearPoints {
 std::vector<uint32_t> VerticesWithoutCracks(const TriangleMesh& mesh) {
   std::vector<uint32_t> result(mesh.positions.size());
   std::iota(result.begin(), result.end(), 0u);
-  const std::vector<uint32_t> border = BorderVertices(mesh.triangles);
+  const std::vector<uint32_t> border = BorderVertices(mesh);
   const double widest = kWidestCrack * BoundingBoxDiagonal(mesh);
   if (border.empty() || widest == 0) return result;
   NearPoints kept(mesh.positions, mesh.positions[border[0]], widest);

@@ -10,29 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/surface_sampler.h"
+#include "geometry/measured_surface.h"
 #include "geometry/triangle_tree.h"
 
 namespace lacerta {
 
-// A mesh ready to be sampled and to be measured against.
-struct SurfaceDistanceMeter::Surface {
-  Surface(const TriangleMesh& mesh, bool with_vertices) : tree(mesh) {
-    cumulated_area = CumulatedAreas(tree.corners_in_tree_order());
-    if (!with_vertices) return;
-    std::vector<bool> seen(mesh.positions.size());
-    for (const uint32_t f : tree.faces_in_tree_order()) {
-      for (const uint32_t v : mesh.triangles[f]) {
-        if (!seen[v]) vertices.push_back(mesh.positions[v]);
-        seen[v] = true;
-      }
-    }
-  }
-
-  TriangleTree tree;
-  // Doubled area of the triangles up to and with this one, in tree order: consecutive samples are neighbours in space.
-  std::vector<double> cumulated_area;
-  std::vector<Vec3f> vertices;  // those in use, once each, where the tree order first meets them
+struct SurfaceDistanceMeter::Original {
+  std::unique_ptr<const MeasuredSurface> surface;
   double diagonal = 0.0;
 };
 
@@ -48,20 +32,18 @@ struct BlockSum {
   double sum2 = 0.0, max2 = 0.0;
 };
 
-// Sum and maximum of the squared distances to `tree` from the points 0 to count - 1. make_points() returns a function
-// from index to point, called with rising indices within a block.
+// Sum and maximum of the squared distances to `surface` of the points 0 to count - 1.
+//   make_points  () -> MeasuredSurface::Points
 template <typename MakePoints>
-BlockSum SumOverBlocks(uint64_t count, const TriangleTree& tree, const MakePoints& make_points) {
+BlockSum SumOverBlocks(uint64_t count, const MeasuredSurface& surface, const MakePoints& make_points) {
   std::vector<BlockSum> blocks((count + kBlockSize - 1) / kBlockSize);
   tbb::parallel_for(tbb::blocked_range<size_t>(0, blocks.size(), 1), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t block = range.begin(); block != range.end(); ++block) {
-      auto point_at = make_points();
+      const MeasuredSurface::Points point_at = make_points();
       uint32_t hint = SurfacePoint::kNone;
       const uint64_t first = block * kBlockSize, last = std::min(first + kBlockSize, count);
       for (uint64_t i = first; i < last; ++i) {
-        const ClosestPointResult closest = tree.ClosestPointNear(point_at(i), hint);
-        hint = closest.point.face;
-        const double d2 = static_cast<double>(closest.squared_distance);
+        const double d2 = surface.SquaredDistance(point_at(i), &hint);
         blocks[block].sum2 += d2;
         blocks[block].max2 = std::max(blocks[block].max2, d2);
       }
@@ -124,19 +106,29 @@ double Psnr(double distance, double diagonal) {
 
 double DistanceOfPsnr(double psnr, double diagonal) { return diagonal * std::pow(10.0, -psnr / 20.0); }
 
-SurfaceDistanceMeter::SurfaceDistanceMeter(std::shared_ptr<const Surface> original) : original_(std::move(original)) {}
+SurfaceDistanceMeter::SurfaceDistanceMeter(std::shared_ptr<const Original> original) : original_(std::move(original)) {}
 
 StatusOr<SurfaceDistanceMeter> SurfaceDistanceMeter::Create(const TriangleMesh& original) {
+  return Create(original, [&] { return MakeMeasuredSurface(original, /*with_vertices=*/true); });
+}
+
+StatusOr<SurfaceDistanceMeter> SurfaceDistanceMeter::CreateLean(const TriangleMesh& original) {
+  return Create(original, [&] { return MakeLeanSurface(original); });
+}
+
+template <typename Make>
+StatusOr<SurfaceDistanceMeter> SurfaceDistanceMeter::Create(const TriangleMesh& original, const Make& make) {
   LACERTA_RETURN_IF_ERROR(CheckMesh(original).WithContext("original"));
-  auto surface = std::make_shared<Surface>(original, /*with_vertices=*/true);
-  surface->diagonal = BoundingBoxDiagonal(original);
-  if (!(surface->cumulated_area.back() > 0.0)) {
+  auto made = std::make_shared<Original>();
+  made->surface = make();
+  made->diagonal = BoundingBoxDiagonal(original);
+  if (!(made->surface->doubled_area() > 0.0)) {
     return InvalidData("original: all triangles are degenerate, there is no area to sample");
   }
-  if (!(surface->diagonal >= kMinDiagonal)) {
+  if (!(made->diagonal >= kMinDiagonal)) {
     return InvalidData("original: its bounding box is smaller than 1e-12 units; scale the mesh up");
   }
-  return SurfaceDistanceMeter(std::move(surface));
+  return SurfaceDistanceMeter(std::move(made));
 }
 
 StatusOr<SurfaceDistance> SurfaceDistanceMeter::Measure(const TriangleMesh& mesh,
@@ -146,21 +138,17 @@ StatusOr<SurfaceDistance> SurfaceDistanceMeter::Measure(const TriangleMesh& mesh
                            std::to_string(SurfaceDistanceOptions::kMaxSamples));
   }
   LACERTA_RETURN_IF_ERROR(CheckMesh(mesh).WithContext("measured mesh"));
-  const Surface other(mesh, options.max_at_vertices);
-  if (!(other.cumulated_area.back() > 0.0)) {
+  const std::unique_ptr<const MeasuredSurface> other = MakeMeasuredSurface(mesh, options.max_at_vertices);
+  if (!(other->doubled_area() > 0.0)) {
     return InvalidData("measured mesh: all triangles are degenerate, there is no area to sample");
   }
-  const auto measure = [&options](const Surface& from, const Surface& to) {
-    const BlockSum samples = SumOverBlocks(options.num_samples, to.tree, [&] {
-      return [sampler = SurfaceSampler(from.tree.corners_in_tree_order(), from.cumulated_area, options.num_samples,
-                                       options.seed)](uint64_t i) mutable { return sampler.Sample(i).position; };
-    });
-    const BlockSum vertices = SumOverBlocks(options.max_at_vertices ? from.vertices.size() : 0, to.tree,
-                                            [&from] { return [&from](uint64_t i) { return from.vertices[i]; }; });
+  const auto measure = [&options](const MeasuredSurface& from, const MeasuredSurface& to) {
+    const BlockSum samples = SumOverBlocks(options.num_samples, to, [&] { return from.Samples(options.num_samples, options.seed); });
+    const BlockSum vertices = SumOverBlocks(options.max_at_vertices ? from.num_vertices() : 0, to, [&] { return from.Vertices(); });
     return OneSidedDistance{std::sqrt(samples.sum2 / static_cast<double>(options.num_samples)),
                             std::sqrt(std::max(samples.max2, vertices.max2))};
   };
-  return SurfaceDistance{measure(*original_, other), measure(other, *original_)};
+  return SurfaceDistance{measure(*original_->surface, *other), measure(*other, *original_->surface)};
 }
 
 double SurfaceDistanceMeter::diagonal() const { return original_->diagonal; }

@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "geometry/for_each_branch.h"
+
 namespace lacerta {
 namespace {
 
@@ -242,8 +244,8 @@ uint32_t TriangleTree::BuildNode(const Building& building, Reference* first, Ref
   } else {
     // Every thread fills its own list; joined in order, they are the same list that one thread would have made.
     std::vector<Node> lists[kWidth];
-    tbb::parallel_for(0, num_parts, [&](int k) {
-      if (has_node(k)) build_part(k, &lists[k]);
+    ForEachBranch(static_cast<size_t>(num_parts), [&](size_t k) {
+      if (has_node(static_cast<int>(k))) build_part(static_cast<int>(k), &lists[k]);
     });
     for (int k = 0; k < num_parts; ++k) {
       const auto offset = static_cast<uint32_t>(nodes->size());

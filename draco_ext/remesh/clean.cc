@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "common/subdivision.h"
 #include "geometry/close_cracks.h"
-#include "geometry/equal_rows.h"
+#include "geometry/position_table.h"
+#include "geometry/vertex_ranges.h"
 
 namespace lacerta {
 namespace {
@@ -32,75 +34,108 @@ Status CheckInput(const TriangleMesh& mesh) {
 
 // For each vertex the first one at the same position.
 std::vector<uint32_t> FirstAtPosition(const std::vector<Vec3f>& positions) {
-  std::vector<float> table;
-  table.reserve(3 * positions.size());
-  for (const Vec3f& p : positions) table.insert(table.end(), {p.x, p.y, p.z});
-  return FirstEqualRow(Span<const float>(table), 3);
+  PositionTable table(positions.size());
+  std::vector<uint32_t> first(positions.size());
+  for (uint32_t v = 0; v < first.size(); ++v) first[v] = table.FindOrEnter(positions, positions[v], v);
+  return first;
 }
 
 // True for triangles that repeat an earlier one, whichever corner they start at.
-std::vector<bool> RepeatedTriangles(const std::vector<Triangle>& triangles) {
+std::vector<bool> RepeatedTriangles(const TriangleMesh& mesh) {
+  constexpr uint64_t kTrianglesAtATime = 2'000'000;
+  const std::vector<Triangle>& triangles = mesh.triangles;
+  const auto lowest = [&](size_t f) { return *std::min_element(triangles[f].begin(), triangles[f].end()); };
   const auto rotated = [&](uint32_t f) {
     Triangle t = triangles[f];
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     return t;
   };
-  std::vector<std::pair<Triangle, uint32_t>> keyed(triangles.size());
-  for (uint32_t f = 0; f < triangles.size(); ++f) keyed[f] = {rotated(f), f};
-  std::sort(keyed.begin(), keyed.end());
+  const auto for_each_triangle = [&](const auto& visit) {
+    for (size_t f = 0; f < triangles.size(); ++f) visit(lowest(f));
+  };
   std::vector<bool> repeated(triangles.size(), false);
-  for (size_t i = 1; i < keyed.size(); ++i) repeated[keyed[i].second] = keyed[i].first == keyed[i - 1].first;
+  for (const VertexRange& range : CutVertices(static_cast<uint32_t>(mesh.positions.size()), kTrianglesAtATime, for_each_triangle)) {
+    std::vector<std::pair<Triangle, uint32_t>> keyed;
+    for (uint32_t f = 0; f < triangles.size(); ++f) {
+      if (range.Has(lowest(f))) keyed.emplace_back(rotated(f), f);
+    }
+    std::sort(keyed.begin(), keyed.end());
+    for (size_t i = 1; i < keyed.size(); ++i) repeated[keyed[i].second] = keyed[i].first == keyed[i - 1].first;
+  }
   return repeated;
 }
 
-// The triangles with vertices replaced, but for those that have one twice then.
-std::vector<Triangle> WithVertices(const std::vector<uint32_t>& replaced, const std::vector<Triangle>& triangles) {
-  std::vector<Triangle> result;
-  result.reserve(triangles.size());
-  for (const Triangle& t : triangles) {
+// Replaces vertices, and takes off the triangles that have one twice then.
+void ReplaceVertices(const std::vector<uint32_t>& replaced, std::vector<Triangle>* triangles) {
+  size_t kept = 0;
+  for (const Triangle& t : *triangles) {
     const Triangle r = {replaced[t[0]], replaced[t[1]], replaced[t[2]]};
-    if (r[0] != r[1] && r[1] != r[2] && r[2] != r[0]) result.push_back(r);
+    if (r[0] != r[1] && r[1] != r[2] && r[2] != r[0]) (*triangles)[kept++] = r;
   }
-  return result;
+  triangles->resize(kept);
+}
+
+std::vector<bool> UsedVertices(const TriangleMesh& mesh) {
+  std::vector<bool> used(mesh.positions.size(), false);
+  for (const Triangle& t : mesh.triangles) {
+    for (const uint32_t v : t) used[v] = true;
+  }
+  return used;
+}
+
+// Welds vertices: for each what replaces it, triangles in the same terms.
+std::vector<uint32_t> Weld(TriangleMesh* mesh) {
+  std::vector<uint32_t> first = FirstAtPosition(mesh->positions);
+  ReplaceVertices(first, &mesh->triangles);
+  const std::vector<uint32_t> closed = VerticesWithoutCracks(*mesh);
+  for (uint32_t& v : first) v = closed[v];
+  ReplaceVertices(closed, &mesh->triangles);
+  return first;
+}
+
+uint64_t RemoveRepeated(TriangleMesh* mesh) {
+  const std::vector<bool> repeated = RepeatedTriangles(*mesh);
+  size_t kept = 0;
+  for (size_t f = 0; f < mesh->triangles.size(); ++f) {
+    if (!repeated[f]) mesh->triangles[kept++] = mesh->triangles[f];
+  }
+  const uint64_t removed = mesh->triangles.size() - kept;
+  mesh->triangles.resize(kept);
+  return removed;
 }
 
 }  // namespace
 
-StatusOr<CleanedMesh> Clean(const TriangleMesh& mesh) {
-  LACERTA_RETURN_IF_ERROR(CheckInput(mesh));
-  CleanedMesh result;
-  std::vector<uint32_t> first = FirstAtPosition(mesh.positions);
-  std::vector<Triangle> triangles = WithVertices(first, mesh.triangles);
-  const std::vector<uint32_t> closed = VerticesWithoutCracks({mesh.positions, triangles});
-  for (uint32_t& v : first) v = closed[v];
-  triangles = WithVertices(closed, triangles);
-  result.report.degenerate_triangles = mesh.triangles.size() - triangles.size();
-  const std::vector<bool> repeated = RepeatedTriangles(triangles);
-  std::vector<bool> used(mesh.positions.size(), false), referenced(mesh.positions.size(), false);
-  for (const Triangle& t : mesh.triangles) {
-    for (const uint32_t v : t) referenced[v] = true;
-  }
-  for (size_t f = 0; f < triangles.size(); ++f) {
-    if (repeated[f]) {
-      ++result.report.duplicate_triangles;
-      continue;
-    }
-    result.mesh.triangles.push_back(triangles[f]);
-    for (const uint32_t v : triangles[f]) used[v] = true;
-  }
-  if (result.mesh.triangles.empty()) return InvalidData("the mesh has no triangle left after cleaning");
+StatusOr<CleanReport> CleanInPlace(TriangleMesh* mesh) {
+  LACERTA_RETURN_IF_ERROR(CheckInput(*mesh));
+  CleanReport report;
+  const std::vector<bool> referenced = UsedVertices(*mesh);
+  const size_t num_triangles = mesh->triangles.size();
+  std::vector<uint32_t> new_index = Weld(mesh);  // what replaces a vertex, at first
+  report.degenerate_triangles = num_triangles - mesh->triangles.size();
+  report.duplicate_triangles = RemoveRepeated(mesh);
+  if (mesh->triangles.empty()) return InvalidData("the mesh has no triangle left after cleaning");
 
-  std::vector<uint32_t> new_index(mesh.positions.size(), kNone);
-  for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    if (first[v] != v && referenced[v]) ++result.report.welded_vertices;
+  const std::vector<bool> used = UsedVertices(*mesh);
+  uint32_t num_kept = 0;
+  for (uint32_t v = 0; v < mesh->positions.size(); ++v) {
+    const bool is_first = new_index[v] == v;
+    if (!is_first && referenced[v]) ++report.welded_vertices;
     if (used[v]) {
-      new_index[v] = static_cast<uint32_t>(result.mesh.positions.size());
-      result.mesh.positions.push_back(mesh.positions[v]);
-    } else if (first[v] == v || !referenced[v]) {
-      ++result.report.isolated_vertices;
+      mesh->positions[num_kept] = mesh->positions[v];
+      new_index[v] = num_kept++;
+    } else if (is_first || !referenced[v]) {
+      ++report.isolated_vertices;
     }
   }
-  for (Triangle& t : result.mesh.triangles) t = {new_index[t[0]], new_index[t[1]], new_index[t[2]]};
+  mesh->positions.resize(num_kept);
+  for (Triangle& t : mesh->triangles) t = {new_index[t[0]], new_index[t[1]], new_index[t[2]]};
+  return report;
+}
+
+StatusOr<CleanedMesh> Clean(const TriangleMesh& mesh) {
+  CleanedMesh result{mesh, {}};
+  LACERTA_ASSIGN_OR_RETURN(result.report, CleanInPlace(&result.mesh));
   return result;
 }
 

@@ -186,10 +186,16 @@ TriangleMesh OneRound(const TriangleMesh& mesh, uint32_t num_triangles, uint32_t
   std::vector<TriangleMesh> parts = SimplifyParts<TriangleMesh>(
       mesh, num_triangles, part_triangles,
       [&](uint32_t number, const Faces& faces, const std::vector<uint8_t>& is_shared) { return SimplifyPart(mesh, number, faces, is_shared); });
+  size_t num_vertices = 0, num_triangles_left = 0;
+  for (const TriangleMesh& part : parts) {
+    num_vertices += part.positions.size();
+    num_triangles_left += part.triangles.size();
+  }
   TriangleMesh joined;
+  joined.positions.reserve(num_vertices);
+  joined.triangles.reserve(num_triangles_left);
   for (TriangleMesh& part : parts) Append(std::exchange(part, {}), &joined);
-  StatusOr<CleanedMesh> cleaned = Clean(joined);
-  return cleaned.ok() ? std::move(cleaned).value().mesh : TriangleMesh();
+  return CleanInPlace(&joined).ok() ? joined : TriangleMesh();
 }
 
 AttributedMesh OneRound(const AttributedMesh& input, const std::vector<double>& weights, uint32_t num_triangles, uint32_t part_triangles) {

@@ -4,9 +4,16 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <random>
 #include <system_error>
+
+#if defined(__unix__) || defined(__APPLE__)
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+#endif
 
 namespace lacerta {
 namespace {
@@ -52,6 +59,45 @@ StatusOr<Bytes> ReadFile(const std::string& path) {
   if (std::ferror(file.get()) != 0) return IoError(path + ": reading failed (" + Reason() + ")");
   return bytes;
 }
+
+StatusOr<FileBytes> FileBytes::Open(const std::string& path, uint64_t map_from) {
+#if defined(__unix__) || defined(__APPLE__)
+  std::error_code error;
+  const auto size = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
+  if (!error && size >= map_from && size > 0) {
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return IoError(path + ": cannot be opened (" + Reason() + ")");
+    void* const mapped = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
+    close(file);
+    if (mapped != MAP_FAILED) {
+      FileBytes result;
+      result.mapped_ = static_cast<const uint8_t*>(mapped);
+      result.mapped_size_ = size;
+      return result;
+    }
+  }
+#else
+  (void)map_from;
+#endif
+  LACERTA_ASSIGN_OR_RETURN(Bytes bytes, ReadFile(path));
+  return FileBytes(std::move(bytes));
+}
+
+#if defined(__unix__) || defined(__APPLE__)
+FileBytes::~FileBytes() {
+  if (is_mapped()) munmap(const_cast<uint8_t*>(mapped_), mapped_size_);
+}
+
+void FileBytes::PassTo(const uint8_t* end) const {
+  const std::less<> before;
+  if (!is_mapped() || before(end, mapped_) || before(mapped_ + mapped_size_, end)) return;
+  const auto page = static_cast<size_t>(sysconf(_SC_PAGESIZE));
+  madvise(const_cast<uint8_t*>(mapped_), static_cast<size_t>(end - mapped_) / page * page, MADV_DONTNEED);
+}
+#else
+FileBytes::~FileBytes() = default;
+void FileBytes::PassTo(const uint8_t*) const {}
+#endif
 
 Status WriteFileAtomically(const std::string& path, Span<const uint8_t> bytes) {
   std::error_code error;

@@ -3,6 +3,7 @@
 #define LACERTA_MESH_FILE_MESH_BUILDER_H_
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,14 @@ namespace lacerta {
 struct PositionRules {
   Vec3d origin = {};            // they are relative to it
   bool keep_not_finite = false;  // those that are not finite become NaN, for RemoveNotFinite, instead of being refused
+  // Called now and then with a place in the bytes before which nothing is looked at any more; may be empty.
+  std::function<void(const void* end)> passed;
+
+  // For readers that are about to take thing number i, the bytes of which begin at `end`.
+  void Pass(uint64_t i, const void* end) const {
+    constexpr uint64_t kThings = 1 << 16;
+    if (i % kThings == kThings - 1 && passed) passed(end);
+  }
 };
 
 // Appends a position; fails with kInvalidData when a coordinate is not finite as a float, unless such are kept.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <utility>
 
 #include "document/draco_primitive.h"
@@ -87,6 +88,10 @@ StatusOr<FileSurface> ParseFile(Span<const uint8_t> bytes, MeshFormat format, co
   return InternalError("a mesh format without a parser");
 }
 
+std::function<void(const void*)> PassingIn(const FileBytes& file) {
+  return [&file](const void* end) { file.PassTo(static_cast<const uint8_t*>(end)); };
+}
+
 Status CheckIndices(const TriangleMesh& mesh) {
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const uint32_t index : mesh.triangles[t]) {
@@ -132,20 +137,30 @@ Vec3d FarOrigin(const TriangleMesh& mesh) {
 }
 
 StatusOr<TriangleMesh> ParseMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, const Vec3d& origin) {
-  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder, {origin, false}));
+  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder, {origin, false, {}}));
   return std::move(surface.surface);
 }
 
-StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, bool repair) {
+StatusOr<TriangleMesh> ParseMesh(const FileBytes& file, MeshFormat format, const std::string& folder, const Vec3d& origin) {
+  LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(file.span(), format, folder, {origin, false, PassingIn(file)}));
+  return std::move(surface.surface);
+}
+
+namespace {
+
+StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, PositionRules rules) {
   if (format == MeshFormat::kGltf) return InvalidArgument("glTF assets are more than a mesh");
+  const bool repair = rules.keep_not_finite;
   const auto parse = [&](const Vec3d& origin) -> StatusOr<FileSurface> {
-    LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder, {origin, repair}));
+    rules.origin = origin;
+    LACERTA_ASSIGN_OR_RETURN(FileSurface surface, ParseFile(bytes, format, folder, rules));
     if (repair) LACERTA_RETURN_IF_ERROR(RemoveNotFinite(&surface));
     return surface;
   };
   LACERTA_ASSIGN_OR_RETURN(FileSurface surface, parse({}));
   const Vec3d origin = FarOrigin(surface.surface);
   if (origin != Vec3d{}) {
+    surface = {};  // before the other comes
     LACERTA_ASSIGN_OR_RETURN(surface, parse(origin));
   }
   if (format == MeshFormat::kDrc) NoteDracoAttributes(bytes, &surface.notes);
@@ -155,9 +170,19 @@ StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, c
   return mesh;
 }
 
+}  // namespace
+
+StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, bool repair) {
+  return ParseFileMesh(bytes, format, folder, PositionRules{{}, repair, {}});
+}
+
+StatusOr<FileMesh> ParseFileMesh(const FileBytes& file, MeshFormat format, const std::string& folder, bool repair) {
+  return ParseFileMesh(file.span(), format, folder, PositionRules{{}, repair, PassingIn(file)});
+}
+
 StatusOr<TriangleMesh> ReadMeshFile(const std::string& path, const Vec3d& origin) {
-  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(path));
-  const StatusOr<MeshFormat> format = DetectMeshFormat(path, bytes);
+  LACERTA_ASSIGN_OR_RETURN(const FileBytes bytes, FileBytes::Open(path));
+  const StatusOr<MeshFormat> format = DetectMeshFormat(path, bytes.span());
   if (!format.ok()) return format.status().WithContext(path);
   StatusOr<TriangleMesh> mesh = ParseMesh(bytes, format.value(), std::filesystem::path(path).parent_path().string(), origin);
   if (!mesh.ok()) return mesh.status().WithContext(path);

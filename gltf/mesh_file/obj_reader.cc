@@ -77,9 +77,41 @@ uint32_t RowOf(std::string_view word, CornerValues* values) {
   return MeshAttribute::kNoValue;
 }
 
+// How many vertices and faces there are, roughly: lines that go on in the next one may look like some.
+struct LineCounts {
+  size_t vertices = 0, faces = 0;
+};
+
+LineCounts CountLines(std::string_view text, const PositionRules& rules) {
+  LineCounts counts;
+  uint64_t number = 0;
+  for (size_t at = 0; at + 1 < text.size(); ++number) {
+    rules.Pass(number, text.data() + at);
+    const bool ends_word = text[at + 1] == ' ' || text[at + 1] == '\t';
+    if (ends_word && text[at] == 'v') ++counts.vertices;
+    if (ends_word && text[at] == 'f') ++counts.faces;
+    const size_t end = text.find('\n', at);
+    if (end == text.npos) break;
+    at = end + 1;
+  }
+  return counts;
+}
+
+// Appends the rows of a face, but for faces before the first that has any.
+void AppendRows(const std::vector<uint32_t>& rows, size_t num_triangles_before, MeshAttribute* attribute) {
+  constexpr Triangle kNoRows = {MeshAttribute::kNoValue, MeshAttribute::kNoValue, MeshAttribute::kNoValue};
+  const bool has_any = std::any_of(rows.begin(), rows.end(), [](uint32_t row) { return row != MeshAttribute::kNoValue; });
+  if (attribute->corners.empty() && !has_any) return;
+  attribute->corners.resize(num_triangles_before, kNoRows);
+  AppendFan(rows, &attribute->corners);
+}
+
 class ObjReader {
  public:
-  explicit ObjReader(const PositionRules& rules) : rules_(rules) {}
+  ObjReader(const PositionRules& rules, const LineCounts& counts) : rules_(rules) {
+    surface_.surface.positions.reserve(counts.vertices);
+    surface_.surface.triangles.reserve(counts.faces);
+  }
 
   Status ReadLine(std::string_view line, size_t number) {
     const std::string_view keyword = TakeWord(&line);
@@ -146,9 +178,12 @@ class ObjReader {
       normal_rows_.push_back(RowOf(PartOf(word, 2), &normals_));
     }
     constexpr uint64_t kAnyVertex = uint64_t{1} << 32;
+    const size_t num_before = mesh.triangles.size();
     LACERTA_RETURN_IF_ERROR(AppendPolygon(corners_, kAnyVertex, num_faces_++, &mesh));
-    AppendFan(texture_rows_, &texture_.attribute.corners);
-    AppendFan(normal_rows_, &normals_.attribute.corners);
+    AppendRows(texture_rows_, num_before, &texture_.attribute);
+    AppendRows(normal_rows_, num_before, &normals_.attribute);
+    if (material_ == FileMesh::kNoMaterial && surface_.triangle_materials.empty()) return Status();
+    surface_.triangle_materials.resize(num_before, FileMesh::kNoMaterial);
     surface_.triangle_materials.resize(mesh.triangles.size(), material_);
     return Status();
   }
@@ -180,10 +215,11 @@ class ObjReader {
 
 StatusOr<FileSurface> ParseObj(Span<const uint8_t> bytes, const PositionRules& rules) {
   TextScanner scanner({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  ObjReader reader(rules);
+  ObjReader reader(rules, CountLines(scanner.rest(), rules));
   std::string joined;
   std::string_view line;
   while (NextLogicalLine(&scanner, &joined, &line)) {
+    rules.Pass(scanner.line(), scanner.rest().data());
     const Status status = reader.ReadLine(line, scanner.line());
     if (!status.ok()) return status.WithContext(scanner.LineName());
   }

@@ -86,6 +86,7 @@ Status ReadAll(TextScanner* scanner, const PositionRules& rules, FileSurface* su
   LACERTA_RETURN_IF_ERROR(CheckCount(num_vertices, 6, scanner->bytes_left() + 1, "vertices"));
   mesh->positions.reserve(static_cast<size_t>(num_vertices));
   for (uint64_t v = 0; v < num_vertices; ++v) {
+    rules.Pass(v, scanner->rest().data());
     LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
     LACERTA_RETURN_IF_ERROR(ReadVertex(line, rules, mesh));
   }
@@ -93,6 +94,7 @@ Status ReadAll(TextScanner* scanner, const PositionRules& rules, FileSurface* su
   mesh->triangles.reserve(static_cast<size_t>(num_faces));
   std::vector<int64_t> corners;
   for (uint64_t f = 0; f < num_faces; ++f) {
+    rules.Pass(f, scanner->rest().data());
     LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
     LACERTA_RETURN_IF_ERROR(ReadFace(line, f, &corners, mesh));
   }

@@ -28,6 +28,7 @@ class AsciiValues {
     return Status();
   }
   uint64_t bytes_left() const { return scanner_.bytes_left(); }
+  const void* here() const { return scanner_.rest().data(); }
   std::string Where() const { return "line " + std::to_string(header_lines_ + scanner_.line()); }
   // Least bytes of one value: a digit and a blank, which the very last one may lack.
   static uint64_t LeastBytes(PlyType) { return 2; }
@@ -56,6 +57,7 @@ class BinaryValues {
     return Status();
   }
   uint64_t bytes_left() const { return bytes_.size() - offset_; }
+  const void* here() const { return bytes_.data() + offset_; }
   std::string Where() const { return "byte " + std::to_string(offset_); }
   static uint64_t LeastBytes(PlyType type) { return PlyTypeSize(type); }
   static constexpr uint64_t kSlack = 0;
@@ -182,6 +184,7 @@ Status ReadVertices(const PlyElement& element, const PositionRules& rules, Value
   const auto number = [&](int property, double scale = 1) { return static_cast<float>(scale * row[static_cast<size_t>(property)]); };
   mesh->positions.reserve(static_cast<size_t>(element.count));
   for (uint64_t v = 0; v < element.count; ++v) {
+    rules.Pass(v, values->here());
     LACERTA_RETURN_IF_ERROR(ReadRow(element, values, [&](size_t property, double value) { row[property] = value; }));
     const auto [x, y, z] = columns.position;
     if (!AppendPosition(row[static_cast<size_t>(x)], row[static_cast<size_t>(y)], row[static_cast<size_t>(z)], rules, mesh).ok()) {
@@ -227,11 +230,12 @@ struct FaceRow {
 
 // Calls done(row number, FaceRow) for each row.
 template <typename Values, typename Done>
-Status ReadFaceRows(const PlyElement& element, Values* values, const Done& done) {
+Status ReadFaceRows(const PlyElement& element, const PositionRules& rules, Values* values, const Done& done) {
   LACERTA_ASSIGN_OR_RETURN(const size_t indices, FindIndices(element));
   const int texture = element.Find({"texcoord"}), number = element.Find({"texnumber"});
   FaceRow face;
   for (uint64_t row = 0; row < element.count; ++row) {
+    rules.Pass(row, values->here());
     face.vertices.clear();
     face.texture.clear();
     LACERTA_RETURN_IF_ERROR(ReadRow(element, values, [&](size_t property, double value) {
@@ -248,12 +252,14 @@ Status ReadFaceRows(const PlyElement& element, Values* values, const Done& done)
 
 // wedges: texture coordinates that faces have themselves.
 template <typename Values>
-Status ReadFaces(const PlyElement& element, uint64_t num_vertices, Values* values, FileSurface* surface, CornerValues* wedges) {
+Status ReadFaces(const PlyElement& element, uint64_t num_vertices, const PositionRules& rules, Values* values, FileSurface* surface,
+                 CornerValues* wedges) {
   TriangleMesh& mesh = surface->surface;
-  wedges->attribute.corners.resize(mesh.triangles.size(), kNoRows);  // of strips that came before
+  const bool may_have_wedges = element.Find({"texcoord"}) >= 0;
+  if (may_have_wedges) wedges->attribute.corners.resize(mesh.triangles.size(), kNoRows);  // of strips that came before
   mesh.triangles.reserve(static_cast<size_t>(element.count));
   std::vector<uint32_t> rows;
-  return ReadFaceRows(element, values, [&](uint64_t number, const FaceRow& face) {
+  return ReadFaceRows(element, rules, values, [&](uint64_t number, const FaceRow& face) {
     const size_t num_before = mesh.triangles.size();
     LACERTA_RETURN_IF_ERROR(AppendPolygon(face.vertices, num_vertices, number, &mesh));
     std::vector<float>& values_of_wedges = wedges->attribute.values;
@@ -263,7 +269,7 @@ Status ReadFaces(const PlyElement& element, uint64_t num_vertices, Values* value
       rows.push_back(has_wedges ? wedges->attribute.num_values() : MeshAttribute::kNoValue);
       if (has_wedges) values_of_wedges.insert(values_of_wedges.end(), {face.texture[2 * i], 1 - face.texture[2 * i + 1]});
     }
-    AppendFan(rows, &wedges->attribute.corners);
+    if (may_have_wedges) AppendFan(rows, &wedges->attribute.corners);
     const bool has_texture = face.texture_number >= 0 && face.texture_number < static_cast<int64_t>(surface->textures.size());
     if (!surface->textures.empty()) {
       surface->triangle_materials.resize(num_before, FileMesh::kNoMaterial);
@@ -276,8 +282,8 @@ Status ReadFaces(const PlyElement& element, uint64_t num_vertices, Values* value
 // Strips as Stanford's tools write them: every vertex makes a triangle with the two before it, each second one turned round; -1 begins
 // a new strip.
 template <typename Values>
-Status ReadStrips(const PlyElement& element, uint64_t num_vertices, Values* values, TriangleMesh* mesh) {
-  return ReadFaceRows(element, values, [&](uint64_t row, const FaceRow& face) {
+Status ReadStrips(const PlyElement& element, uint64_t num_vertices, const PositionRules& rules, Values* values, TriangleMesh* mesh) {
+  return ReadFaceRows(element, rules, values, [&](uint64_t row, const FaceRow& face) {
     const std::vector<int64_t>& vertices = face.vertices;
     size_t begin = 0;
     for (size_t i = 0; i < vertices.size(); ++i) {
@@ -328,9 +334,9 @@ StatusOr<FileSurface> ReadBody(const PlyHeader& header, const PositionRules& rul
     if (element.name == "vertex") {
       status = ReadVertices(element, rules, values, &mesh, &attributes, &unseen);
     } else if (element.name == "face") {
-      status = ReadFaces(element, num_vertices, values, &surface, &wedges);
+      status = ReadFaces(element, num_vertices, rules, values, &surface, &wedges);
     } else if (element.name == "tristrips") {
-      status = ReadStrips(element, num_vertices, values, &mesh);
+      status = ReadStrips(element, num_vertices, rules, values, &mesh);
     } else {
       status = SkipRows(element, values);
     }

@@ -10,6 +10,7 @@
 #include "extension/progressive.h"
 #include "lacerta/gltf.h"
 #include "pack/accessor_pool.h"
+#include "pack/large_shape.h"
 #include "pack/plan.h"
 #include "pack/repair.h"
 #include "pack/replace_geometry.h"
@@ -196,15 +197,16 @@ void DeclareExtensions(Fallback fallback, bool progressive, GltfDocument* docume
   if (fallback == Fallback::kNone) AddExtension("extensionsRequired", kProgressiveName, document);
 }
 
-StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& options) {
+Status CheckOptions(const PackOptions& options) {
   if (options.fallback == Fallback::kDraco && options.encode.form != StreamForm::kDraco) {
     return InvalidArgument(
         "the fallback \"draco\" needs the Draco form of the stream; choose another fallback for the custom form");
   }
-  if (UsesExtension(document.json, kProgressiveName)) {
-    return Unsupported("the asset is packed already; unpack it first, or pack the original, which loses less");
-  }
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<PrimitivePlan> plans, PlanPrimitives(document, options));
+  return Status();
+}
+
+// The document with the geometry that the plans have for it.
+StatusOr<PackResult> StorePlans(GltfDocument document, const std::vector<PrimitivePlan>& plans, const PackOptions& options) {
   std::set<uint64_t> unused_views = DracoViews(document);
   std::vector<Place> geometries;
   for (const PrimitivePlan& plan : plans) {
@@ -227,6 +229,26 @@ StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& opti
   if (!result.external.empty()) ReferToExternal(result.external, options.external_uri, &document);
   if (plans.empty()) result.report.notes.push_back("the asset holds no mesh");
   result.glb = FormatGlb(document);
+  return result;
+}
+
+StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& options) {
+  LACERTA_RETURN_IF_ERROR(CheckOptions(options));
+  if (UsesExtension(document.json, kProgressiveName)) {
+    return Unsupported("the asset is packed already; unpack it first, or pack the original, which loses less");
+  }
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<PrimitivePlan> plans, PlanPrimitives(document, options));
+  return StorePlans(std::move(document), plans, options);
+}
+
+StatusOr<PackResult> PackLargeShape(FileMesh mesh, const std::string& name, const PackOptions& options) {
+  LACERTA_RETURN_IF_ERROR(CheckOptions(options));
+  LACERTA_ASSIGN_OR_RETURN(LargeShape shape, PlanLargeShape(std::move(mesh), name, options));
+  return StorePlans(std::move(shape.document), shape.plans, options);
+}
+
+StatusOr<PackResult> WithNotes(StatusOr<PackResult> result, const std::vector<std::string>& notes) {
+  if (result.ok()) result.value().report.notes.insert(result.value().report.notes.begin(), notes.begin(), notes.end());
   return result;
 }
 
@@ -254,9 +276,19 @@ StatusOr<PackResult> PackMesh(const TriangleMesh& mesh, const std::string& name,
 StatusOr<PackResult> PackMesh(const FileMesh& mesh, const std::string& name, const PackOptions& options) {
   if (mesh.mesh.surface.triangles.empty()) return InvalidData("the mesh has no triangles");
   return WithinMemory([&]() -> StatusOr<PackResult> {
-    LACERTA_ASSIGN_OR_RETURN(PackResult result, PackDocument(SingleMeshDocument(mesh, name), options));
-    result.report.notes.insert(result.report.notes.begin(), mesh.notes.begin(), mesh.notes.end());
-    return result;
+    LACERTA_ASSIGN_OR_RETURN(const bool is_large, IsLargeShape(mesh, options));
+    return WithNotes(is_large ? PackLargeShape(mesh, name, options) : PackDocument(SingleMeshDocument(mesh, name), options), mesh.notes);
+  });
+}
+
+StatusOr<PackResult> PackMesh(FileMesh&& mesh, const std::string& name, const PackOptions& options) {
+  const FileMesh& as_it_is = mesh;
+  if (mesh.mesh.surface.triangles.empty()) return InvalidData("the mesh has no triangles");
+  return WithinMemory([&]() -> StatusOr<PackResult> {
+    LACERTA_ASSIGN_OR_RETURN(const bool is_large, IsLargeShape(mesh, options));
+    if (!is_large) return PackMesh(as_it_is, name, options);
+    const std::vector<std::string> notes = mesh.notes;
+    return WithNotes(PackLargeShape(std::move(mesh), name, options), notes);
   });
 }
 

@@ -244,6 +244,12 @@ StatusOr<Bytes> ReadInput(const std::string& path) {
   return bytes;
 }
 
+StatusOr<FileBytes> OpenInput(const std::string& path) {
+  if (path != "-") return FileBytes::Open(path);
+  LACERTA_ASSIGN_OR_RETURN(Bytes bytes, ReadInput(path));
+  return FileBytes(std::move(bytes));
+}
+
 Status WriteOutput(const std::string& path, Span<const uint8_t> bytes) {
   if (path != "-") return WriteFileAtomically(path, bytes);
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() && std::fflush(stdout) == 0;

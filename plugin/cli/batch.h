@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lacerta/file_io.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
 #include "report.h"
@@ -58,6 +59,8 @@ void AddBatchOptions(CLI::App* command, BatchOptions* options);
 
 // Files, or standard input and output for "-". Messages begin with the path.
 StatusOr<Bytes> ReadInput(const std::string& path);
+// The same, mapped where it is large.
+StatusOr<FileBytes> OpenInput(const std::string& path);
 Status WriteOutput(const std::string& path, Span<const uint8_t> bytes);
 
 // Whether two files are in different folders: a relative URI that leads somewhere from the one does not from the other.

@@ -46,7 +46,9 @@ Status RunCompare(const CompareArguments& arguments) {
     LACERTA_ASSIGN_OR_RETURN(original, ReadMeshFile(arguments.original, origin));
   }
   LACERTA_ASSIGN_OR_RETURN(const TriangleMesh other, ReadMeshFile(arguments.other, origin));
-  const StatusOr<SurfaceDistanceMeter> meter = SurfaceDistanceMeter::Create(original);
+  constexpr size_t kLarge = 2'000'000;  // triangles
+  const StatusOr<SurfaceDistanceMeter> meter =
+      original.triangles.size() > kLarge ? SurfaceDistanceMeter::CreateLean(original) : SurfaceDistanceMeter::Create(original);
   if (!meter.ok()) return meter.status().WithContext(arguments.original);
   SurfaceDistanceOptions options;
   options.num_samples = arguments.samples;

@@ -125,8 +125,8 @@ void PrintPackReport(const PackArguments& arguments, const PackReport& report, u
 StatusOr<TriangleMesh> ReadSurface(const PackArguments& arguments, std::vector<std::string>* notes) {
   const std::string& path = arguments.input;
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadInput(path));
-  StatusOr<MeshFormat> format = DetectMeshFormat(path, bytes);
+  LACERTA_ASSIGN_OR_RETURN(const FileBytes bytes, OpenInput(path));
+  StatusOr<MeshFormat> format = DetectMeshFormat(path, bytes.span());
   if (!format.ok()) return format.status().WithContext(path);
   if (format.value() == MeshFormat::kGltf) {
     if (arguments.repair) return InvalidArgument(path + ": --repair mends glTF assets on their way into a .glb; pack into one");
@@ -151,8 +151,8 @@ StatusOr<TriangleMesh> ReadSurface(const PackArguments& arguments, std::vector<s
 
 StatusOr<FileOutcome> PackStream(const PackArguments& arguments, const EncodeOptions& options) {
   std::vector<std::string> notes;
-  LACERTA_ASSIGN_OR_RETURN(const TriangleMesh mesh, ReadSurface(arguments, &notes));
-  const StatusOr<EncodedMesh> encoded = EncodeMesh(mesh, options);
+  LACERTA_ASSIGN_OR_RETURN(TriangleMesh mesh, ReadSurface(arguments, &notes));
+  const StatusOr<EncodedMesh> encoded = EncodeMesh(std::move(mesh), options);
   if (!encoded.ok()) return encoded.status().WithContext(arguments.input);
   LACERTA_RETURN_IF_ERROR(WriteOutput(arguments.output, encoded.value().stream));
   const EncodeReport& report = encoded.value().report;
@@ -173,7 +173,8 @@ StatusOr<FileOutcome> PackStream(const PackArguments& arguments, const EncodeOpt
 }
 
 StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& options, uint64_t* input_bytes) {
-  LACERTA_ASSIGN_OR_RETURN(Bytes bytes, ReadInput(arguments.input));
+  LACERTA_ASSIGN_OR_RETURN(FileBytes file, OpenInput(arguments.input));
+  const Span<const uint8_t> bytes = file.span();
   *input_bytes = bytes.size();
   const bool is_json = arguments.input == "-" && !bytes.empty() && bytes[0] == '{';
   StatusOr<MeshFormat> format = MeshFormat::kGltf;
@@ -181,10 +182,10 @@ StatusOr<PackResult> PackAny(const PackArguments& arguments, const PackOptions& 
   if (!format.ok()) return format.status();
   if (format.value() == MeshFormat::kGltf) return PackGltf(bytes, options);
   const std::string name = std::filesystem::path(arguments.input).stem().string();
-  LACERTA_ASSIGN_OR_RETURN(FileMesh mesh, ParseFileMesh(bytes, format.value(), options.folder, arguments.repair));
-  bytes = Bytes();  // large meshes fill the memory
+  LACERTA_ASSIGN_OR_RETURN(FileMesh mesh, ParseFileMesh(file, format.value(), options.folder, arguments.repair));
+  file = FileBytes();  // large meshes fill the memory
   if (arguments.shape_only) mesh = ShapeOf(std::move(mesh));
-  return PackMesh(mesh, name, options);
+  return PackMesh(std::move(mesh), name, options);
 }
 
 // A relative URI of a file name: what is not safe in one is escaped.
@@ -264,7 +265,8 @@ int RunPack(PackArguments arguments) {
   if (!items.ok()) return Finish(items.status());
   const bool single = items.value().size() == 1;
   arguments.tables = single && !arguments.batch.json && items.value()[0].output != "-" && StdoutIsTerminal();
-  if (const uint64_t memory = arguments.memory != 0 ? arguments.memory : FreeMemory().value_or(0); memory != 0) HoldToMemory(memory);
+  const uint64_t memory = arguments.memory != 0 ? arguments.memory : FreeMemory().value_or(0);
+  if (memory != 0) HoldToMemory(memory);
   ProgressLine progress;
   EncodeOptions options;
   options.target = Target(arguments);
@@ -275,6 +277,7 @@ int RunPack(PackArguments arguments) {
                                                   : LevelChoice::kWhereTheyPay;
   options.mode = arguments.mode == "paper" ? EncodeMode::kPaper : EncodeMode::kDefault;
   options.effort = arguments.effort == "fast" ? Effort::kFast : arguments.effort == "best" ? Effort::kBest : Effort::kNormal;
+  options.memory = memory;
   if (single) options.progress = progress.Callback();
   return RunBatch(items.value(), arguments.batch,
                   [&](const BatchItem& item) { return PackFile(arguments, options, item); });
@@ -342,7 +345,8 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   pack->add_flag("--repair", arguments->repair,
                  "Mend numbers that are not finite instead of refusing the file, and tell so: vertices without a position go with their triangles, "
                  "other values follow those beside them");
-  pack->add_option("--memory", arguments->memory, "At most this much memory, such as 800M or 12G (default: what is free); what needs more fails by name")
+  pack->add_option("--memory", arguments->memory, "At most this much memory, such as 800M or 12G (default: what is free): large surfaces make do with less, down to 36 bytes a triangle; "
+                   "what needs more fails by name")
       ->transform(CLI::AsSizeValue(false));
   AddBatchOptions(pack, &arguments->batch);
   pack->add_flag("--json", arguments->batch.json, "Print a report as JSON");

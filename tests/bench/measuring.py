@@ -53,6 +53,20 @@ def run(command):
     return json.loads(done.stdout), seconds, cpu
 
 
+def run_with_peak(command):
+    """What a command prints as JSON, its seconds of wall clock and of all threads, and the bytes of memory at its peak."""
+    start = time.monotonic()
+    with tempfile.TemporaryFile("w+") as out:
+        process = subprocess.Popen([str(word) for word in command], stdout=out)
+        _, status, usage = os.wait4(process.pid, 0)
+        seconds = time.monotonic() - start
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode not in (EXIT_OK, EXIT_TARGET_MISSED):
+            raise SystemExit(f"{' '.join(map(str, command))}: exit {process.returncode}")
+        out.seek(0)
+        return json.load(out), seconds, usage.ru_utime + usage.ru_stime, 1024 * usage.ru_maxrss
+
+
 def pack_and_check(lacerta, mesh, *options):
     """Packs a mesh file as a stream, unpacks the file again and measures that against the mesh. The measuring takes other
     samples than the encoder took, so that it checks its report."""

@@ -1,6 +1,7 @@
 """Meshes with every triangle split in four, for the tables that ask for larger ones than there are."""
 
 import math
+import multiprocessing
 import struct
 
 
@@ -71,3 +72,39 @@ def split_in_four(positions, triangles, turned=True):
 def split_flat(positions, triangles):
     """The same surface, as a subdivision surface."""
     return split_at(positions, triangles, False, lambda a, b, _: tuple((x + y) / 2 for x, y in zip(positions[a], positions[b])))
+
+
+def write_stl(path, positions, triangles):
+    with open(path, "wb") as file:
+        file.write(bytes(80) + struct.pack("<I", len(triangles)))
+        for t in triangles:
+            file.write(struct.pack("<12fH", 0, 0, 0, *positions[t[0]], *positions[t[1]], *positions[t[2]], 0))
+
+
+def write_obj(path, positions, triangles):
+    with open(path, "w", encoding="ascii") as file:
+        file.writelines(f"v {p[0]:.9g} {p[1]:.9g} {p[2]:.9g}\n" for p in positions)
+        file.writelines(f"f {t[0] + 1} {t[1] + 1} {t[2] + 1}\n" for t in triangles)
+
+
+WRITERS = {"ply": write_ply, "stl": write_stl, "obj": write_obj}
+
+
+def prepare(data, name, folder, extension="ply"):
+    """The file of a mesh, NAME or NAME:n for one with its triangles split in four n times; made where it is not there."""
+    base, _, splits = name.partition(":")
+    source = data / f"{base}.ply"
+    if not splits and extension == "ply":
+        return source
+    path = folder / f"{base}_{splits or 0}.{extension}"
+    positions, triangles = read_ply(source)
+    for _ in range(int(splits or 0)):
+        positions, triangles = split_in_four(positions, triangles)
+    WRITERS[extension](path, positions, triangles)
+    return path
+
+
+def prepared(*arguments):
+    """The same in a process of its own: what a process takes before it becomes a command counts as the command's memory."""
+    with multiprocessing.Pool(1) as pool:
+        return pool.apply(prepare, arguments)

@@ -66,6 +66,10 @@ struct EncodeOptions {
   // 1..8. With more than one the coefficients of a level come in several rounds, coarse values first, so that a stream cut short is
   // nearer to the surface; the whole takes some more bytes (docs/results/prefix_table.md).
   int quality_layers = 1;
+  // Bytes that encoding should do with, the mesh included; 0: no limit. Where they are fewer than the usual need, the input is followed by way of
+  // a mesh of as few triangles as they allow, errors are measured to the input all the same, and subdivision of the input is not looked for.
+  // Allocations are not counted; where one fails, less is tried. Else the stream depends on this number, not on what is free.
+  uint64_t memory = 0;
   // Called now and then with the finished share (0..1) and what is being done; may be empty.
   std::function<void(double share, const char* stage)> progress;
 };
@@ -116,8 +120,11 @@ struct EncodedMesh {
 };
 
 // Encodes a triangle mesh. Fails with kInvalidData on positions that are not finite, indices out of range, or no triangle
-// left after cleaning; with kInvalidArgument on a target that makes no sense; with kLimitExceeded where memory runs out.
+// left after cleaning; with kInvalidArgument on a target that makes no sense; with kLimitExceeded where memory runs out or
+// `options.memory` is too little.
 StatusOr<EncodedMesh> EncodeMesh(const TriangleMesh& mesh, const EncodeOptions& options);
+// The same without a copy of large meshes; what is left of `mesh` is of no use.
+StatusOr<EncodedMesh> EncodeMesh(TriangleMesh&& mesh, const EncodeOptions& options);
 
 struct DecodedMesh {
   TriangleMesh mesh;

@@ -70,6 +70,11 @@ class SurfaceDistanceMeter {
   // finite or beyond 1e18 in size, or a bounding box smaller than 1e-12. Degenerate triangles among others are fine.
   static StatusOr<SurfaceDistanceMeter> Create(const TriangleMesh& original);
 
+  // For originals of many millions of triangles: takes 7 to 13 bytes a triangle beside the mesh, where Create takes about 100, and two to three times as
+  // long to measure. The distances are the same but for the choice of samples. `original` has to outlive the meter and its copies.
+  static StatusOr<SurfaceDistanceMeter> CreateLean(const TriangleMesh& original);
+  static StatusOr<SurfaceDistanceMeter> CreateLean(TriangleMesh&&) = delete;
+
   // Distance between the original and `mesh`. Fails as Create does, except for the size of the box, and with
   // kInvalidArgument on options out of range.
   StatusOr<SurfaceDistance> Measure(const TriangleMesh& mesh, const SurfaceDistanceOptions& options = {}) const;
@@ -78,10 +83,12 @@ class SurfaceDistanceMeter {
   double diagonal() const;
 
  private:
-  struct Surface;
-  explicit SurfaceDistanceMeter(std::shared_ptr<const Surface> original);
+  struct Original;
+  explicit SurfaceDistanceMeter(std::shared_ptr<const Original> original);
+  template <typename Make>
+  static StatusOr<SurfaceDistanceMeter> Create(const TriangleMesh& original, const Make& make);
 
-  std::shared_ptr<const Surface> original_;
+  std::shared_ptr<const Original> original_;
 };
 
 // The same for a single pair.

@@ -121,6 +121,8 @@ StatusOr<PackResult> PackMesh(const TriangleMesh& mesh, const std::string& name,
 
 // The same of a mesh with what its file laid on it: one primitive for each group. Its notes come first in the report's.
 StatusOr<PackResult> PackMesh(const FileMesh& mesh, const std::string& name, const PackOptions& options);
+// The same without a copy of large surfaces; what is left of `mesh` is of no use.
+StatusOr<PackResult> PackMesh(FileMesh&& mesh, const std::string& name, const PackOptions& options);
 
 // A GLB of one mesh in core glTF, uncompressed. Triangle indices must be below #V. Fails with kUnsupported beyond 4 GB.
 StatusOr<Bytes> FormatPlainGlb(const TriangleMesh& mesh, const std::string& name, const Vec3d& origin = {});

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 
+#include "lacerta/file_io.h"
 #include "lacerta/file_mesh.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
@@ -17,7 +18,7 @@ enum class MeshFormat {
   kPly,   // ascii, binary little and big endian
   kObj,   // Wavefront
   kOff,   // OFF, COFF, NOFF, STOFF in text form
-  kStl,   // ascii and binary; three vertices of its own for every triangle
+  kStl,   // ascii and binary; corners at one place become one vertex
   kDrc,   // a stream of ours in either form, or any stock Draco mesh; finest level
   kGltf,  // glb or gltf: the triangle primitives of the default scene with the transforms of their nodes
 };
@@ -42,6 +43,10 @@ Vec3d FarOrigin(const TriangleMesh& mesh);
 // cannot be used is left aside with a note, and never in the way of the surface. Positions are relative to their FarOrigin. Other formats: the surface alone. kGltf is not for here.
 // `repair`: triangles of vertices that have no finite position are taken off, with a note, instead of being refused.
 StatusOr<FileMesh> ParseFileMesh(Span<const uint8_t> bytes, MeshFormat format, const std::string& folder, bool repair = false);
+
+// The same of a file that is read or mapped, whose pages are let go of once they were parsed.
+StatusOr<TriangleMesh> ParseMesh(const FileBytes& file, MeshFormat format, const std::string& folder = "", const Vec3d& origin = {});
+StatusOr<FileMesh> ParseFileMesh(const FileBytes& file, MeshFormat format, const std::string& folder, bool repair = false);
 
 // Reads a file of any of the formats above. Messages begin with `path`. Fails with kNotFound or kIoError besides what
 // ParseMesh returns.

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "shapes/shapes.h"
@@ -318,6 +319,68 @@ TEST(BoundingBoxDiagonal, IsThatOfTheUsedVertices) {
   mesh.triangles.push_back({0, far, far});
   EXPECT_NEAR(BoundingBoxDiagonal(mesh), std::sqrt(3.0), 1e-12);
   EXPECT_EQ(BoundingBoxDiagonal({}), 0.0);
+}
+
+// The same distances of other samples: apart by the error of sampling, and exactly the same where every sample is as far.
+TEST(LeanMeter, AgreesWithTheUsualOne) {
+  const std::pair<TriangleMesh, TriangleMesh> pairs[] = {{shapes::BumpySphere(5, 0.1f, 0.01f), shapes::BumpySphere(3, 0.1f)},
+                                                         {shapes::Torus(80, 40), Quantized(shapes::Torus(80, 40), 8)},
+                                                         {shapes::CreasedBox(30), Moved(shapes::CreasedBox(7), {0.01f, 0, 0})},
+                                                         {shapes::GridWithBorder(90, 40, 0.2f), shapes::GridWithBorder(20, 10, 0.2f)},
+                                                         {shapes::SpheresOverAPlate(5, 0.05f), shapes::GridWithBorder(4, 4)}};
+  for (const auto& [original, mesh] : pairs) {
+    const SurfaceDistance usual = SurfaceDistanceMeter::Create(original).value().Measure(mesh).value();
+    const SurfaceDistanceMeter meter = SurfaceDistanceMeter::CreateLean(original).value();
+    const SurfaceDistance lean = meter.Measure(mesh).value();
+    EXPECT_NEAR(lean.forward.rms, usual.forward.rms, 0.005 * usual.forward.rms);
+    EXPECT_NEAR(lean.backward.rms, usual.backward.rms, 1e-6 * usual.backward.rms);  // the same samples
+    EXPECT_NEAR(lean.forward.max, usual.forward.max, 0.05 * usual.forward.max);
+    EXPECT_NEAR(lean.backward.max, usual.backward.max, 1e-6 * usual.backward.max);
+    EXPECT_EQ(meter.diagonal(), BoundingBoxDiagonal(original));
+    // Few samples go through the blocks by long steps, many by short ones.
+    const SurfaceDistance few = meter.Measure(mesh, SurfaceDistanceOptions::RmsOnly(2000)).value();
+    EXPECT_NEAR(few.forward.rms, usual.forward.rms, 0.15 * usual.forward.rms);
+  }
+  const TriangleMesh plane = shapes::GridWithBorder(7, 5);
+  const SurfaceDistance d = SurfaceDistanceMeter::CreateLean(plane).value().Measure(Moved(plane, {0, 0, 0.5f})).value();
+  for (const double value : {d.forward.rms, d.forward.max, d.backward.rms, d.backward.max}) EXPECT_NEAR(value, 0.5, 1e-6);
+}
+
+// Samples are even over the area, whatever the triangles: a fan of thin ones beside two large ones, of which one is away.
+TEST(LeanMeter, WeighsTrianglesByTheirArea) {
+  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  constexpr uint32_t kThin = 1000;
+  for (uint32_t i = 0; i <= kThin; ++i) mesh.positions.push_back({1 - static_cast<float>(i) / kThin, 1, 0});
+  for (uint32_t i = 0; i < kThin; ++i) mesh.triangles.push_back({0, 4 + i, 5 + i});
+  const TriangleMesh half{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, {{0, 1, 2}}};
+  const double usual = SurfaceDistanceMeter::Create(mesh).value().Measure(half).value().forward.rms;
+  EXPECT_NEAR(SurfaceDistanceMeter::CreateLean(mesh).value().Measure(half).value().forward.rms, usual, 0.001 * usual);
+}
+
+TEST(LeanMeter, RefusesWhatTheUsualOneRefuses) {
+  const TriangleMesh flat{{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}}, out_of_range{{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}}, none;
+  for (const TriangleMesh* mesh : {&flat, &out_of_range, &none}) {
+    EXPECT_EQ(SurfaceDistanceMeter::CreateLean(*mesh).status().message(), SurfaceDistanceMeter::Create(*mesh).status().message());
+    EXPECT_EQ(SurfaceDistanceMeter::CreateLean(*mesh).status().code(), StatusCode::kInvalidData);
+  }
+}
+
+// Unused vertices, far away, are nothing that is measured.
+TEST(LeanMeter, LooksAtUsedVerticesAlone) {
+  TriangleMesh mesh = shapes::Torus(30, 20);
+  const double usual = SurfaceDistanceMeter::Create(mesh).value().Measure(shapes::Torus(15, 10)).value().forward.max;
+  mesh.positions.push_back({100, 0, 0});
+  EXPECT_NEAR(SurfaceDistanceMeter::CreateLean(mesh).value().Measure(shapes::Torus(15, 10)).value().forward.max, usual, 0.01 * usual);
+}
+
+TEST(LeanMeter, DoesNotDependOnTheNumberOfThreads) {
+  const TriangleMesh original = shapes::BumpySphere(5, 0.1f, 0.01f), mesh = shapes::BumpySphere(3, 0.1f);
+  const SurfaceDistance many = SurfaceDistanceMeter::CreateLean(original).value().Measure(mesh).value();
+  tbb::task_arena one(1);
+  const SurfaceDistance single = one.execute([&] { return SurfaceDistanceMeter::CreateLean(original).value().Measure(mesh).value(); });
+  EXPECT_EQ(many.forward.rms, single.forward.rms);
+  EXPECT_EQ(many.backward.rms, single.backward.rms);
+  EXPECT_EQ(many.forward.max, single.forward.max);
 }
 
 }  // namespace

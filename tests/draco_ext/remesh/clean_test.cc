@@ -137,5 +137,44 @@ TEST(Clean, RefusesWhatItCannotRead) {
               HasSubstr("no triangle left"));
 }
 
+// So many triangles are taken in several ranges of vertices: what repeats or is cracked across them is found all the same.
+TEST(Clean, FindsRepetitionsAndCracksOfLargeMeshes) {
+  TriangleMesh mesh = shapes::Torus(1200, 900);  // 2,160,000 triangles
+  const auto num_vertices = static_cast<uint32_t>(mesh.positions.size());
+  const size_t num_triangles = mesh.triangles.size();
+  TriangleMesh expected = mesh;
+  std::vector<uint32_t> doubled = {0, num_vertices / 3, num_vertices - 1};  // vertices that some triangles have a copy of, one of them a crack away
+  for (size_t i = 0; i < doubled.size(); ++i) {
+    mesh.positions.push_back(mesh.positions[doubled[i]] + Vec3f{0, 0, i == 1 ? 1e-6f : 0});
+    bool is_first = true;
+    for (Triangle& t : mesh.triangles) {
+      for (uint32_t& v : t) {
+        if (v != doubled[i]) continue;
+        if (!is_first) v = num_vertices + static_cast<uint32_t>(i);
+        is_first = false;
+      }
+    }
+  }
+  for (const size_t f : {size_t{5}, num_triangles / 2, num_triangles - 7}) {
+    const Triangle t = mesh.triangles[f];
+    mesh.triangles.push_back({t[1], t[2], t[0]});
+  }
+  const CleanedMesh cleaned = Cleaned(mesh);
+  ExpectSameMesh(cleaned.mesh, expected);
+  ExpectCounts(cleaned.report, 3, 0, 3, 0);
+}
+
+TEST(Clean, InPlaceIsTheSame) {
+  for (const TriangleMesh& mesh : {shapes::TriangleSoup(3), shapes::WithDegenerateFaces(3), shapes::Torus(20, 10)}) {
+    const CleanedMesh expected = Cleaned(mesh);
+    TriangleMesh cleaned = mesh;
+    const StatusOr<CleanReport> report = CleanInPlace(&cleaned);
+    ASSERT_TRUE(report.ok());
+    ExpectSameMesh(cleaned, expected.mesh);
+    const CleanReport& e = expected.report;
+    ExpectCounts(report.value(), e.welded_vertices, e.degenerate_triangles, e.duplicate_triangles, e.isolated_vertices);
+  }
+}
+
 }  // namespace
 }  // namespace lacerta

@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
 
 #include "gltf/test_bytes.h"
 #include "lacerta/file_io.h"
+#include "shapes/shapes.h"
 
 namespace lacerta {
 namespace {
@@ -117,6 +119,33 @@ TEST_F(MeshFile, ReadsRealMeshes) {
   ASSERT_TRUE(mesh.ok()) << mesh.status().message();
   EXPECT_EQ(mesh.value().positions.size(), 6475u);
   EXPECT_EQ(mesh.value().triangles.size(), 12946u);
+}
+
+// Pages that were passed come again, and a mapped file is parsed as one that was read.
+TEST_F(MeshFile, MappedFilesAreReadAsOthers) {
+  const TriangleMesh torus = shapes::Torus(400, 300);  // 240,000 triangles: pages are passed several times
+  for (const char* name : {"/torus.ply", "/torus.obj"}) {
+    const std::string path = folder_ + name;
+    ASSERT_TRUE(WriteMeshFile(torus, path).ok());
+    const Bytes expected = ReadFile(path).value();
+    const FileBytes mapped = FileBytes::Open(path, 1).value(), read = FileBytes::Open(path, expected.size() + 1).value();
+    EXPECT_FALSE(read.is_mapped());
+    ASSERT_EQ(mapped.span().size(), expected.size());
+    const auto is_expected = [&] { return std::equal(expected.begin(), expected.end(), mapped.span().begin()); };
+    EXPECT_TRUE(is_expected());
+    mapped.PassTo(mapped.span().end());
+    mapped.PassTo(nullptr);
+    EXPECT_TRUE(is_expected());
+    for (const FileBytes* bytes : {&mapped, &read}) {
+      const MeshFormat format = DetectMeshFormat(path, bytes->span()).value();
+      EXPECT_EQ(ParseMesh(*bytes, format).value().triangles, torus.triangles);
+      const FileMesh file = ParseFileMesh(*bytes, format, folder_).value();
+      EXPECT_EQ(file.mesh.surface.positions, torus.positions);
+      EXPECT_TRUE(file.mesh.attributes.empty());
+    }
+  }
+  EXPECT_EQ(FileBytes::Open(folder_ + "/missing", 0).status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(FileBytes::Open(folder_, 0).status().code(), StatusCode::kIoError);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "gltf/test_bytes.h"
 #include "lacerta/mesh_file.h"
+#include "shapes/shapes.h"
 
 namespace lacerta {
 namespace {
@@ -44,9 +45,34 @@ TEST(StlReader, ReadsTextAndBinary) {
   for (const char* comment : {"", "solid but binary"}) {
     const StatusOr<TriangleMesh> binary = Parse(Binary(comment));
     ASSERT_TRUE(binary.ok()) << binary.status().message();
-    EXPECT_EQ(binary.value().positions.size(), 6u);
-    EXPECT_EQ(binary.value().positions[5], (Vec3f{0, 1, 1}));
-    EXPECT_THAT(binary.value().triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{3, 4, 5}));
+    EXPECT_THAT(binary.value().positions, ElementsAre(Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, 1, 1}));
+    EXPECT_THAT(binary.value().triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 1, 3}));
+  }
+}
+
+// Six corners meet in every vertex of the torus, none elsewhere; -0 is 0.
+TEST(StlReader, CornersAtOnePlaceAreOneVertex) {
+  const TriangleMesh torus = shapes::Torus(40, 30);
+  Bytes bytes(80, 0);
+  Append(static_cast<uint32_t>(torus.triangles.size()), &bytes);
+  for (const Triangle& t : torus.triangles) {
+    for (int zero = 0; zero < 3; ++zero) Append(0.0f, &bytes);
+    for (const uint32_t v : t) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const float value = torus.positions[v][axis];
+        Append(value == 0 && t[0] % 2 == 0 ? -value : value, &bytes);
+      }
+    }
+    Append(uint16_t{0}, &bytes);
+  }
+  const StatusOr<TriangleMesh> read = Parse(bytes);
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  ASSERT_EQ(read.value().positions.size(), torus.positions.size());
+  ASSERT_EQ(read.value().triangles.size(), torus.triangles.size());
+  for (size_t f = 0; f < torus.triangles.size(); ++f) {
+    for (size_t k = 0; k < 3; ++k) {
+      ASSERT_EQ(read.value().positions[read.value().triangles[f][k]], torus.positions[torus.triangles[f][k]]);
+    }
   }
 }
 
