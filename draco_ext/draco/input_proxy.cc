@@ -1,11 +1,12 @@
 #include "draco/input_proxy.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "draco/decoded_distance.h"
 #include "draco/rate_control.h"
+#include "remesh/components.h"
 #include "remesh/error_floor.h"
-#include "remesh/simplify.h"
 #include "remesh/simplify_in_parts.h"
 
 namespace lacerta {
@@ -21,8 +22,10 @@ class ProxySearch {
   // The first near enough of those of at most `most` triangles, from where the last call ended.
   std::optional<TriangleMesh> FirstNearEnough(const SimplificationSequence& sequence, size_t most) {
     constexpr uint64_t kSamples = 50'000;
-    for (; next_ <= most; next_ *= 2) {
+    while (std::max<uint64_t>(next_, sequence.fewest_triangles()) <= most) {
       TriangleMesh proxy = sequence.MeshWith(static_cast<uint32_t>(next_));
+      do next_ *= 2;
+      while (next_ <= sequence.fewest_triangles());  // that would be the same mesh again
       const ErrorAtSize size{DecodedDistance(meter_, proxy, SurfaceDistanceOptions::RmsOnly(kSamples)), static_cast<double>(proxy.triangles.size())};
       const bool is_near = IsNearItsFloor(coarser_ ? *coarser_ : size, size, allowed_, share_);
       coarser_ = size;
@@ -41,17 +44,22 @@ class ProxySearch {
 }  // namespace
 
 std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                       const InputProxyOptions& options) {
+                                       const InputProxyOptions& options, std::optional<SimplificationSequence>* whole) {
   const size_t most_triangles = cleaned.triangles.size() / 2;
   if (options.fewest_triangles > most_triangles) return std::nullopt;
+  const size_t num_components = CountComponents(cleaned);
+  if (num_components > most_triangles) return std::nullopt;  // each keeps a triangle
   const double psnr = TypicalPsnr(target, static_cast<double>(options.fewest_triangles) / 2);  // what bytes bring hardly depends on how dense the input is
   ProxySearch search(meter, DistanceOfPsnr(psnr, meter.diagonal()), options);
-  if (options.most_at_once <= most_triangles) {
+  if (options.most_at_once <= most_triangles && num_components < options.most_at_once) {
     const TriangleMesh reduced = SimplifyInParts(cleaned, options.most_at_once, options.part_triangles);
     std::optional<TriangleMesh> proxy = search.FirstNearEnough(SimplificationSequence(reduced), std::min(reduced.triangles.size(), most_triangles));
     if (proxy) return proxy;
   }
-  return search.FirstNearEnough(SimplificationSequence(cleaned), most_triangles);
+  std::optional<SimplificationSequence> sequence(std::in_place, cleaned);
+  std::optional<TriangleMesh> proxy = search.FirstNearEnough(*sequence, most_triangles);
+  if (!proxy && whole != nullptr) *whole = std::move(sequence);
+  return proxy;
 }
 
 }  // namespace lacerta

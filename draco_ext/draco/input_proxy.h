@@ -9,6 +9,7 @@
 #include "draco/candidate_search.h"
 #include "lacerta/mesh.h"
 #include "lacerta/surface_distance.h"
+#include "remesh/simplify.h"
 
 namespace lacerta {
 
@@ -23,12 +24,14 @@ struct InputProxyOptions {
   double share = 0.15;
 };
 
-// The input, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them.
+// The input, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them, nor where there are more
+// components than half the triangles.
 //   cleaned  what Clean returned of the input
 //   meter    of the input
 //   target   of the stream
+//   whole    where not null: the collapses of `cleaned`, where no proxy was found among them
 std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                       const InputProxyOptions& options = {});
+                                       const InputProxyOptions& options = {}, std::optional<SimplificationSequence>* whole = nullptr);
 
 // What is remeshed and simplified: the input, or its proxy where there is one. What it refers to must outlive it.
 class ProxiedInput {
@@ -39,9 +42,15 @@ class ProxiedInput {
 
   // Makes the proxy when first called. Not for several threads at a time.
   const TriangleMesh& Mesh() {
-    if (!is_made_) proxy_ = InputProxy(cleaned_, meter_, target_);
+    if (!is_made_) proxy_ = InputProxy(cleaned_, meter_, target_, {}, &sequence_);
     is_made_ = true;
     return proxy_ ? *proxy_ : cleaned_;
+  }
+  // The collapses of that mesh, made once, too.
+  const SimplificationSequence& Sequence() {
+    const TriangleMesh& mesh = Mesh();
+    if (!sequence_) sequence_.emplace(mesh);
+    return *sequence_;
   }
 
  private:
@@ -50,6 +59,7 @@ class ProxiedInput {
   const ResolvedTarget& target_;
   bool is_made_ = false;
   std::optional<TriangleMesh> proxy_;
+  std::optional<SimplificationSequence> sequence_;
 };
 
 }  // namespace lacerta
