@@ -4,7 +4,6 @@ import math
 import random
 import struct
 
-HALF_EDGE = 1 / math.sqrt(2)
 PHI = (1 + math.sqrt(5)) / 2
 # Corners within the unit sphere, and triangles.
 SHAPES = {
