@@ -1,7 +1,6 @@
 #include "draco/crowded_input.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,31 +8,9 @@
 #include <utility>
 
 #include "draco/zero_level.h"
-#include "geometry/bounding_box.h"
 #include "remesh/mesh_fit.h"
 
 namespace lacerta {
-namespace {
-
-// Every vertex at the lattice point next to it.
-LatticeMesh Round(const TriangleMesh& mesh, double step) {
-  LatticeMesh result;
-  result.origin = BoundsOf(mesh.positions).low;
-  result.step = static_cast<float>(step);
-  result.triangles = mesh.triangles;
-  result.lattice.reserve(mesh.positions.size());
-  for (const Vec3f& p : mesh.positions) {
-    std::array<int32_t, 3> point;
-    for (int c = 0; c < 3; ++c) {
-      point[static_cast<size_t>(c)] =
-          static_cast<int32_t>(std::lround((static_cast<double>(p[c]) - static_cast<double>(result.origin[c])) / static_cast<double>(result.step)));
-    }
-    result.lattice.push_back(point);
-  }
-  return result;
-}
-
-}  // namespace
 
 uint64_t SamplesInCrowd(double crowding, uint64_t most) {
   constexpr double kFewest = 2'000, kWithMost = 20;
@@ -56,7 +33,7 @@ StatusOr<ZeroLevelStream> CodeCrowdedInput(const TriangleMesh& mesh, double crow
   std::optional<ZeroLevelStream> best;
   for (int i = 0; i < kMostTries; ++i) {
     step = std::clamp(step, finest, coarsest);
-    LACERTA_ASSIGN_OR_RETURN(CodedZeroLevel coded, EncodeLatticeMesh(Round(mesh, step), CodingEffort::kQuick, target.base_coding));
+    LACERTA_ASSIGN_OR_RETURN(CodedZeroLevel coded, EncodeLatticeMesh(NearestOnLattice(mesh, step), CodingEffort::kQuick, target.base_coding));
     ZeroLevelStream stream = MeasuredZeroLevel(std::move(coded), meter, target, samples);
     stream.measurements = i + 1;
     const auto bytes = static_cast<double>(stream.stream.size());

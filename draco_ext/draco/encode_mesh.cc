@@ -29,7 +29,6 @@
 #include "lacerta/surface_distance.h"
 #include "remesh/input_surface.h"
 #include "remesh/mend_tears.h"
-#include "remesh/simplify.h"
 #include "remesh/surface_parts.h"
 #include "remesh/unsubdivide.h"
 
@@ -174,21 +173,11 @@ std::optional<ChosenStream> EncodeSubdivided(const TriangleMesh& mesh, const Sur
   return std::move(chosen).value();
 }
 
-// A mesh as it becomes simpler, and the search for a stream without levels among those. Stays where it is made.
-struct SimplerSurface {
-  SimplerSurface(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, const SearchEffort& effort)
-      : sequence(mesh), search(mesh, sequence, meter, target, effort) {}
-  SimplerSurface(const SimplerSurface&) = delete;
-  SimplerSurface& operator=(const SimplerSurface&) = delete;
-
-  const SimplificationSequence sequence;
-  SimplerStream search;
-};
-
 // The surface as a normal mesh at the target, unless a simplified mesh, which `simpler` then is, outdoes it by far: *is_simpler, and another
 // status. simpler: set where levels are to pay. Fills `report`.
-StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                    const EncodeOptions& options, std::optional<SimplerSurface>* simpler, bool* is_simpler, PartsReport* report) {
+StatusOr<ChosenStream> CodeRemeshed(ProxiedInput* input, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
+                                    const EncodeOptions& options, std::optional<SimplerStream>* simpler, bool* is_simpler, PartsReport* report) {
+  const TriangleMesh& mesh = input->Mesh();
   const double psnr = TypicalPsnr(target, static_cast<double>(mesh.positions.size())), distance = DistanceOfPsnr(psnr, meter.diagonal());
   const std::optional<MendedMesh> mended = MendTears(mesh, distance);
   const SurfaceParts parts = SplitSurface(mended ? mended->mesh : mesh);
@@ -200,7 +189,7 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
   ForEachBranch(2, [&](size_t branch) {
     const double lambda = UsualLambda(psnr, meter.diagonal());
     if (branch == 1) {
-      if (options.levels == LevelChoice::kWhereTheyPay) simpler->emplace(mesh, meter, target, effort);
+      if (options.levels == LevelChoice::kWhereTheyPay) simpler->emplace(mesh, input->Sequence(), meter, target, effort);
     } else if (effort.every_shape) {
       histories = ShapedHistories(surface, parts.topology);
     } else {
@@ -213,7 +202,7 @@ StatusOr<ChosenStream> CodeRemeshed(const TriangleMesh& mesh, const SurfaceDista
              mended ? mended->closed_tears : 0, mended ? mended->stray_components : 0};
   const auto is_outdone = [&](double bytes) {
     if (!*simpler) return false;
-    const StatusOr<bool> takes_fewer = (*simpler)->search.TakesFewerThan(bytes);
+    const StatusOr<bool> takes_fewer = (*simpler)->TakesFewerThan(bytes);
     *is_simpler = takes_fewer.ok() && takes_fewer.value();
     return *is_simpler;
   };
@@ -239,12 +228,12 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, ProxiedInput* inp
   std::optional<ChosenStream> chosen;
   if (plan.may_unsubdivide) chosen = EncodeSubdivided(mesh, meter, target, options);
   report.subdivided_input = chosen.has_value();
-  std::optional<SimplerSurface> simpler;
+  std::optional<SimplerStream> simpler;
   bool is_simpler = false;
   // A base as small as remeshes have is the best there is; a larger one may take more bytes than another surface in all.
   if (!chosen || HasLargeBase(*chosen, target, mesh)) {
     PartsReport parts;
-    StatusOr<ChosenStream> remeshed = CodeRemeshed(input->Mesh(), meter, target, options, &simpler, &is_simpler, &parts);
+    StatusOr<ChosenStream> remeshed = CodeRemeshed(input, meter, target, options, &simpler, &is_simpler, &parts);
     if (!chosen && !is_simpler && !remeshed.ok()) return remeshed.status();
     const bool is_remeshed = remeshed.ok() && (!chosen || !IsWorthItsVertices(chosen->measured, remeshed.value().measured, target));
     if (is_remeshed) chosen = std::move(remeshed).value();
@@ -255,11 +244,11 @@ StatusOr<EncodedParts> EncodeSurface(const TriangleMesh& mesh, ProxiedInput* inp
   }
   if (options.progress) options.progress(0.95, "comparing with Draco");
   if (simpler && chosen) {
-    LACERTA_ASSIGN_OR_RETURN(is_simpler, simpler->search.IsBetterThan(chosen->measured));
+    LACERTA_ASSIGN_OR_RETURN(is_simpler, simpler->IsBetterThan(chosen->measured));
   }
   if (!is_simpler) return FromRefinement(meter, *chosen, target, report, ReasonForMiss(chosen->measured, target));
   report.subdivided_input = false;
-  const ZeroLevelStream& stream = simpler->search.stream();
+  const ZeroLevelStream& stream = simpler->stream();
   return FromZeroLevel(stream, report, ReasonForSimpler(stream, target));
 }
 
@@ -288,7 +277,7 @@ StatusOr<EncodedMesh> EncodeCleaned(const TriangleMesh& mesh, const CleanReport&
   if (!encoded.ok()) {  // without refinement, then, with the reason
     if (options.progress) options.progress(0.1, "simplifying");
     LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream zero, crowding > kMostCrowding ? CodeCrowdedInput(mesh, crowding, meter, target)
-                                                                            : CodeZeroLevel(proxied.Mesh(), meter, target, EffortOf(options.effort)));
+                                                                            : CodeZeroLevel(proxied.Mesh(), proxied.Sequence(), meter, target, EffortOf(options.effort)));
     const char* const miss = zero.meets_target ? "" : "; the target is out of reach, this is the nearest";
     encoded = FromZeroLevel(std::move(zero), report, encoded.status().message() + miss);
   }

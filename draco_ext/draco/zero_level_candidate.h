@@ -3,6 +3,7 @@
 #define LACERTA_DRACO_ZERO_LEVEL_CANDIDATE_H_
 
 #include <cstddef>
+#include <optional>
 
 #include "draco/zero_level.h"
 #include "lacerta/mesh.h"
@@ -18,7 +19,6 @@ class ZeroLevelCandidate {
  public:
   struct Coding {
     double step = 0;
-    LatticeMesh lattice;
     size_t bytes = 0;       // of `effort`
     double distortion = 0;  // squared distance d_S to the input, model units, by the samples of the fit
     CodedZeroLevel coded;
@@ -45,11 +45,13 @@ class ZeroLevelCandidate {
   static double StepFor(double lattice_distortion);
 
  private:
+  LatticeMesh FitLattice(double step, int rounds, double* distortion) const;
+
   const FitTarget& target_;
   TriangleMesh mesh_;
   const Source source_;
-  bool is_small_;  // few enough triangles to be fitted and to have their lattice points chosen
-  MeshNeighbors neighbors_;
+  // None where there are too many triangles to be fitted and to have their lattice points chosen; nor is there a model then.
+  std::optional<MeshNeighbors> neighbors_;
   DistanceModel model_;  // at mesh_
   double fit_distortion_ = 0;
   double distortion_per_bit_ = 0;

@@ -49,7 +49,7 @@ class ZeroLevelSearch {
     if (first_ == 0) first_ = FirstSize();
     LACERTA_RETURN_IF_ERROR(Look(first_));
     const Trial& trial = tried_.at(first_);
-    if (!target_.is_rate && trial.meets && static_cast<double>(trial.coding.bytes) > kHopeless * most_bytes) return false;
+    if (!target_.is_rate && trial.meets && static_cast<double>(trial.bytes) > kHopeless * most_bytes) return false;
     if (!target_.is_rate) LACERTA_RETURN_IF_ERROR(Look(SizeByShare(trial)));
     for (double ratio = kWideRatio; ratio > kNarrowRatio; ratio = std::sqrt(ratio)) {
       for (int moves = 0; moves < kMostMoves; ++moves) {
@@ -63,25 +63,25 @@ class ZeroLevelSearch {
     }
     // A mesh of many regular triangles may take fewer bytes as it is.
     if (static_cast<double>(mesh_.triangles.size()) < kMostRegular * best_) LACERTA_RETURN_IF_ERROR(Look(Clamped(1e18)));
-    return !(!target_.is_rate && tried_.at(best_).meets && static_cast<double>(tried_.at(best_).coding.bytes) > kHopelessAtBest * most_bytes);
+    return !(!target_.is_rate && tried_.at(best_).meets && static_cast<double>(tried_.at(best_).bytes) > kHopelessAtBest * most_bytes);
   }
 
   // Of the stream of the best size, about; infinite where that does not meet the PSNR.
   double BestBytes() const {
     const Trial& best = tried_.at(best_);
-    return best.meets ? static_cast<double>(best.coding.bytes) : std::numeric_limits<double>::infinity();
+    return best.meets ? static_cast<double>(best.bytes) : std::numeric_limits<double>::infinity();
   }
 
   // The stream of the best size, or where that misses the PSNR after all, of a larger one that meets it, as long as it takes fewer than
   // `most_bytes`: few samples judge sizes, and may overlook a small part of the surface that is far off.
   StatusOr<ZeroLevelStream> Finish(double most_bytes) {
-    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, FinishTrial(tried_.at(best_)));
+    LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, FinishBest());
     const auto is_to_grow = [&] {
       return !target_.is_rate && !stream.meets_target && best_ < mesh_.triangles.size() && static_cast<double>(stream.stream.size()) < most_bytes;
     };
     while (is_to_grow()) {
       LACERTA_RETURN_IF_ERROR(Grow(Square(stream.distance)));
-      LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream larger, FinishTrial(tried_.at(best_)));
+      LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream larger, FinishBest());
       const int measurements = stream.measurements + larger.measurements;
       if (IsBetter(OutcomeOf(larger), OutcomeOf(stream), target_)) stream = std::move(larger);
       stream.measurements = measurements;
@@ -100,10 +100,19 @@ class ZeroLevelSearch {
   static constexpr double kFall = 1.75;
 
   struct Trial {
-    std::shared_ptr<ZeroLevelCandidate> candidate;
-    ZeroLevelCandidate::Coding coding;
+    size_t num_triangles = 0;
+    double fit_distortion = 0;
+    double step = 0;  // of the coding that came nearest to the target
+    size_t bytes = 0;
+    double distortion = 0;
     double score = 0;  // less is better
     bool meets = false;
+
+    void Take(const ZeroLevelCandidate::Coding& coding) {
+      step = coding.step;
+      bytes = coding.bytes;
+      distortion = coding.distortion;
+    }
   };
 
   // Small inputs have little to sample.
@@ -119,10 +128,22 @@ class ZeroLevelSearch {
 
   Status Look(uint32_t triangles) {
     if (tried_.count(triangles) != 0) return Status();
-    LACERTA_ASSIGN_OR_RETURN(Trial trial, Try(triangles));
-    if (tried_.empty() || trial.score < tried_.at(best_).score) best_ = triangles;
-    tried_.emplace(triangles, std::move(trial));
+    std::unique_ptr<ZeroLevelCandidate> candidate = CandidateOf(triangles);
+    LACERTA_ASSIGN_OR_RETURN(const Trial trial, Try(candidate.get()));
+    if (tried_.empty() || trial.score < tried_.at(best_).score) {
+      best_ = triangles;
+      best_candidate_ = std::move(candidate);
+    }
+    tried_.emplace(triangles, trial);
     return Status();
+  }
+
+  // With samples for its size.
+  std::unique_ptr<ZeroLevelCandidate> CandidateOf(uint32_t triangles) {
+    TakeSamples(4, triangles);
+    using Source = ZeroLevelCandidate::Source;
+    const Source source = triangles >= mesh_.triangles.size() ? Source::kInput : Source::kSimplified;
+    return std::make_unique<ZeroLevelCandidate>(fit_target_, sequence_.MeshWith(triangles), source);
   }
 
   // Goes on from the best size, of this squared distance, to one that may well meet the PSNR.
@@ -130,15 +151,17 @@ class ZeroLevelSearch {
     const double ratio = std::clamp(std::pow(distortion / distortion_, 1 / kFall), kNarrowRatio, 2.0);
     const uint32_t larger = std::max(Clamped(best_ * ratio), Clamped(best_ + 1.0));
     LACERTA_RETURN_IF_ERROR(Look(larger));
+    if (best_ == larger) return Status();
     best_ = larger;
+    best_candidate_ = CandidateOf(larger);  // FinishBest fits it for its rate
     return Status();
   }
 
   // Where the fit takes the share of the distance that it takes at the best sizes of most surfaces.
   uint32_t SizeByShare(const Trial& trial) const {
     constexpr double kBestShare = 0.78;
-    const double ratio = std::pow(trial.candidate->fit_distortion() / (kBestShare * distortion_), 1 / kFall);
-    return Clamped(static_cast<double>(trial.candidate->num_triangles()) * std::clamp(ratio, 0.4, 2.5));
+    const double ratio = std::pow(trial.fit_distortion / (kBestShare * distortion_), 1 / kFall);
+    return Clamped(static_cast<double>(trial.num_triangles) * std::clamp(ratio, 0.4, 2.5));
   }
 
   uint32_t Clamped(double triangles) const {
@@ -154,23 +177,20 @@ class ZeroLevelSearch {
     return Clamped(SimplifiedSize(sequence_, meter_, std::sqrt(kUsualGain * distortion_), kSizeSamples, kTolerance));
   }
 
-  StatusOr<Trial> Try(uint32_t triangles) {
+  StatusOr<Trial> Try(ZeroLevelCandidate* candidate) const {
     Trial trial;
-    TakeSamples(4, triangles);
-    const bool is_input = triangles >= mesh_.triangles.size();
-    using Source = ZeroLevelCandidate::Source;
-    trial.candidate = std::make_shared<ZeroLevelCandidate>(fit_target_, sequence_.MeshWith(triangles),
-                                                           is_input ? Source::kInput : Source::kSimplified);
-    LACERTA_RETURN_IF_ERROR(target_.is_rate ? MeetRate(&trial) : MeetPsnr(&trial));
+    LACERTA_RETURN_IF_ERROR(target_.is_rate ? MeetRate(candidate, &trial) : MeetPsnr(candidate, &trial));
+    trial.num_triangles = candidate->num_triangles();
+    trial.fit_distortion = candidate->fit_distortion();
     return trial;
   }
 
-  Status MeetPsnr(Trial* trial) {
-    ZeroLevelCandidate& candidate = *trial->candidate;
+  Status MeetPsnr(ZeroLevelCandidate* at_size, Trial* trial) const {
+    ZeroLevelCandidate& candidate = *at_size;
     constexpr double kMostOfFit = 0.93, kFarOff = 1e9;
     if (candidate.fit_distortion() > kMostOfFit * distortion_) {
       trial->score = kFarOff * (candidate.fit_distortion() / distortion_);
-      trial->coding.step = candidate.StepFor((1 - kMostOfFit) * distortion_);
+      trial->step = candidate.StepFor((1 - kMostOfFit) * distortion_);
       return Status();
     }
     candidate.FitForRate(distortion_ - candidate.fit_distortion(), 1);
@@ -178,13 +198,14 @@ class ZeroLevelSearch {
     constexpr int kSteps = 3;
     double db = 0;
     for (int i = 0; i < kSteps; ++i) {
-      LACERTA_ASSIGN_OR_RETURN(trial->coding, candidate.Code(step, 1, CodingEffort::kQuick, target_.base_coding));
-      db = 10 * std::log10(trial->coding.distortion / distortion_);
+      LACERTA_ASSIGN_OR_RETURN(const ZeroLevelCandidate::Coding coding, candidate.Code(step, 1, CodingEffort::kQuick, target_.base_coding));
+      trial->Take(coding);
+      db = 10 * std::log10(coding.distortion / distortion_);
       if (std::fabs(db) < 0.3) break;
-      step = NextStep(step, trial->coding.distortion, candidate.fit_distortion());
+      step = NextStep(step, coding.distortion, candidate.fit_distortion());
     }
     // Still a little off the target, where a dB is worth 6 % of the bytes.
-    trial->score = std::log(static_cast<double>(trial->coding.bytes)) + 0.06 * std::clamp(db, -10.0, 10.0);
+    trial->score = std::log(static_cast<double>(trial->bytes)) + 0.06 * std::clamp(db, -10.0, 10.0);
     trial->meets = true;
     return Status();
   }
@@ -207,23 +228,22 @@ class ZeroLevelSearch {
     return met.step * std::pow(missed.step / met.step, std::isfinite(share) ? std::clamp(share, 0.1, 0.9) : kMiddle);
   }
 
-  Status MeetRate(Trial* trial) {
-    ZeroLevelCandidate& candidate = *trial->candidate;
+  Status MeetRate(ZeroLevelCandidate* at_size, Trial* trial) const {
+    ZeroLevelCandidate& candidate = *at_size;
     const double fit = std::max(candidate.fit_distortion(), 1e-14 * Square(meter_.diagonal()));
     candidate.FitForRate(fit, 1);
     double step = candidate.StepFor(fit);
     constexpr int kSteps = 5;
     for (int i = 0; i < kSteps; ++i) {
-      LACERTA_ASSIGN_OR_RETURN(ZeroLevelCandidate::Coding coding, candidate.Code(step, 1, CodingEffort::kQuick, target_.base_coding));
+      LACERTA_ASSIGN_OR_RETURN(const ZeroLevelCandidate::Coding coding, candidate.Code(step, 1, CodingEffort::kQuick, target_.base_coding));
       const double excess = static_cast<double>(coding.bytes) / target_.bytes;
       const bool fits = excess <= 1;
-      if (i == 0 || fits || !trial->meets) trial->coding = std::move(coding);
+      if (i == 0 || fits || !trial->meets) trial->Take(coding);
       trial->meets = trial->meets || fits;
       if (excess > 0.98 && excess <= 1) break;
       step *= StepRatioForBytes(1 / excess * 0.99, candidate);
     }
-    trial->score = std::log(trial->coding.distortion) +
-                   (trial->meets ? 0 : 1e3 * static_cast<double>(trial->coding.bytes) / target_.bytes);
+    trial->score = std::log(trial->distortion) + (trial->meets ? 0 : 1e3 * static_cast<double>(trial->bytes) / target_.bytes);
     return Status();
   }
 
@@ -236,8 +256,8 @@ class ZeroLevelSearch {
 
   // Rounding makes bytes and distance jump a little with the step: several steps are tried, more of them where that costs little,
   // and judged by few samples first.
-  StatusOr<ZeroLevelStream> FinishTrial(const Trial& trial) {
-    ZeroLevelCandidate& candidate = *trial.candidate;
+  StatusOr<ZeroLevelStream> FinishBest() {
+    ZeroLevelCandidate& candidate = *best_candidate_;
     constexpr int kFitRounds = 2;
     const size_t triangles = candidate.num_triangles();
     const int usual_tries = triangles < 2000 ? 8 : triangles < 5000 ? 6 : 4;
@@ -246,7 +266,7 @@ class ZeroLevelSearch {
     TakeSamples(8, std::max(triangles, FewestSamples(mesh_)));
     const double added = target_.is_rate ? candidate.fit_distortion() : distortion_ - candidate.fit_distortion();
     candidate.FitForRate(std::max(added, 0.05 * candidate.fit_distortion()), kFitRounds);
-    double step = trial.coding.step;
+    double step = tried_.at(best_).step;
     double bias = 1;  // of squared distances measured in full against those by few samples
     std::optional<ZeroLevelStream> best;
     int measurements = 0;
@@ -292,6 +312,7 @@ class ZeroLevelSearch {
   double distortion_ = 0;  // of a PSNR target
   std::map<uint32_t, Trial> tried_;  // by number of triangles asked for
   uint32_t first_ = 0, best_ = 0;    // of those
+  std::unique_ptr<ZeroLevelCandidate> best_candidate_;  // the only one that is kept: each is as large as its mesh
 };
 
 ZeroLevelStream MeasuredZeroLevel(CodedZeroLevel coded, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
@@ -308,7 +329,11 @@ ZeroLevelStream MeasuredZeroLevel(CodedZeroLevel coded, const SurfaceDistanceMet
 
 StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                         const SearchEffort& effort) {
-  const SimplificationSequence sequence(mesh);
+  return CodeZeroLevel(mesh, SimplificationSequence(mesh), meter, target, effort);
+}
+
+StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter,
+                                        const ResolvedTarget& target, const SearchEffort& effort) {
   ZeroLevelSearch search(mesh, sequence, meter, target, effort);
   LACERTA_RETURN_IF_ERROR(search.FindSize(std::numeric_limits<double>::infinity()).status());
   return search.Finish(std::numeric_limits<double>::infinity());

@@ -33,6 +33,9 @@ ZeroLevelStream MeasuredZeroLevel(CodedZeroLevel coded, const SurfaceDistanceMet
 // of the lattice; where nothing meets the target, the nearest. mesh: any that passed cleaning. Fails as EncodeZeroLevel does.
 StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                         const SearchEffort& effort = SearchEffort());
+// The same where the collapses of `mesh` are known.
+StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter,
+                                        const ResolvedTarget& target, const SearchEffort& effort);
 
 // A search for a stream without levels beside one with levels. All referenced objects must outlive it.
 class SimplerStream {

@@ -11,18 +11,27 @@
 #include "lacerta/surface_distance.h"
 
 namespace lacerta {
-namespace {
 
-constexpr size_t kBlockSize = 1024;
+// A sample of a surface with the share of the area that it stands for.
+struct AreaSample {
+  uint32_t face;
+  Vec3d weights;  // barycentric
+  double share;
+};
 
 // A point on a mesh with the plane that it is to meet: residual = normal . (point - target).
-struct Residual {
+struct FitResidual {
   uint32_t face = SurfacePoint::kNone;
   Vec3d weights;  // barycentric
   Vec3d normal;   // unit
   double residual = 0;
   double weight = 0;
 };
+
+namespace {
+
+constexpr size_t kBlockSize = 1024;
+constexpr double kTiny = 1e-7;  // distance, of the target's diagonal: it has no direction
 
 Vec3d FaceNormal(const TriangleMesh& mesh, uint32_t face) {
   return Normalized(AreaVector(mesh.positions, mesh.triangles[face]));
@@ -34,13 +43,6 @@ Vec3d DirectionBetween(const Vec3d& from, const Vec3d& to, double tiny, const Tr
   const double length = Norm(way);
   return length > tiny ? way * (1 / length) : FaceNormal(mesh, face);
 }
-
-// A sample of a surface with the share of the area that it stands for.
-struct AreaSample {
-  uint32_t face;
-  Vec3d weights;  // barycentric
-  double share;
-};
 
 // As shares of the whole; all zero where there is none.
 std::vector<double> AreaShares(const TriangleMesh& mesh) {
@@ -97,9 +99,9 @@ Vec3d PointOn(const TriangleMesh& mesh, uint32_t face, const Vec3d& weights) {
   return p;
 }
 
-void Add(const std::vector<Residual>& residuals, const TriangleMesh& mesh, const MeshNeighbors& neighbors, double* mean,
+void Add(const std::vector<FitResidual>& residuals, const TriangleMesh& mesh, const MeshNeighbors& neighbors, double* mean,
          DistanceModel* model) {
-  for (const Residual& r : residuals) {
+  for (const FitResidual& r : residuals) {
     if (r.face == SurfacePoint::kNone) continue;
     *mean += r.weight * r.residual * r.residual;
     const double half = 0.5 * r.weight;
@@ -111,6 +113,12 @@ void Add(const std::vector<Residual>& residuals, const TriangleMesh& mesh, const
       if (product > 0) model->off_diagonal[neighbors.face_edges[r.face][k]].AddOuter(r.normal, half * product);
     }
   }
+}
+
+double MeanSquare(const std::vector<FitResidual>& residuals) {
+  double mean = 0;
+  for (const FitResidual& r : residuals) mean += r.weight * r.residual * r.residual;
+  return mean;
 }
 
 template <typename Function>
@@ -151,10 +159,26 @@ DistanceModel FitTarget::ModelAt(const TriangleMesh& mesh, const MeshNeighbors& 
   model.gradient.resize(mesh.positions.size());
   model.diagonal.resize(mesh.positions.size());
   model.off_diagonal.resize(neighbors.edges.size());
-  const double tiny = 1e-7 * diagonal_;
   const TriangleTree tree(mesh);
+  Add(Forward(mesh, tree), mesh, neighbors, &model.forward, &model);
+  const std::vector<AreaSample> own = SampleEveryFace(mesh, tree.faces_in_tree_order(), static_cast<double>(num_samples_));
+  if (own.empty()) {
+    model.backward = diagonal_ * diagonal_;
+    return model;
+  }
+  Add(Backward(mesh, own), mesh, neighbors, &model.backward, &model);
+  return model;
+}
 
-  std::vector<Residual> forward(samples_.size());
+double FitTarget::DistortionAt(const TriangleMesh& mesh) const {
+  const TriangleTree tree(mesh);
+  const std::vector<AreaSample> own = SampleSpread(mesh, tree.faces_in_tree_order(), static_cast<double>(num_samples_));
+  if (own.empty()) return diagonal_ * diagonal_;
+  return std::max(MeanSquare(Forward(mesh, tree)), MeanSquare(Backward(mesh, own)));
+}
+
+std::vector<FitResidual> FitTarget::Forward(const TriangleMesh& mesh, const TriangleTree& tree) const {
+  std::vector<FitResidual> result(samples_.size());
   ForBlocks(samples_.size(), [&](size_t first, size_t last) {
     uint32_t hint = SurfacePoint::kNone;
     for (size_t i = first; i < last; ++i) {
@@ -163,32 +187,28 @@ DistanceModel FitTarget::ModelAt(const TriangleMesh& mesh, const MeshNeighbors& 
       if (closest.face == SurfacePoint::kNone) continue;
       const Vec3d weights{closest.barycentric[0], closest.barycentric[1], closest.barycentric[2]};
       const Vec3d p = Vec3Cast<double>(samples_[i].position), q = PointOn(mesh, closest.face, weights);
-      const Vec3d normal = DirectionBetween(q, p, tiny, mesh, closest.face);
-      forward[i] = {closest.face, weights, normal, Dot(normal, q - p), samples_[i].share};
+      const Vec3d normal = DirectionBetween(q, p, kTiny * diagonal_, mesh, closest.face);
+      result[i] = {closest.face, weights, normal, Dot(normal, q - p), samples_[i].share};
     }
   });
-  Add(forward, mesh, neighbors, &model.forward, &model);
+  return result;
+}
 
-  const std::vector<AreaSample> own = SampleEveryFace(mesh, tree.faces_in_tree_order(), static_cast<double>(num_samples_));
-  if (own.empty()) {
-    model.backward = diagonal_ * diagonal_;
-    return model;
-  }
-  std::vector<Residual> backward(own.size());
-  ForBlocks(own.size(), [&](size_t first, size_t last) {
+std::vector<FitResidual> FitTarget::Backward(const TriangleMesh& mesh, const std::vector<AreaSample>& samples) const {
+  std::vector<FitResidual> result(samples.size());
+  ForBlocks(samples.size(), [&](size_t first, size_t last) {
     uint32_t hint = SurfacePoint::kNone;
     for (size_t i = first; i < last; ++i) {
-      const Vec3d q = PointOn(mesh, own[i].face, own[i].weights);
+      const Vec3d q = PointOn(mesh, samples[i].face, samples[i].weights);
       const SurfacePoint closest = tree_.ClosestPointNear(Vec3Cast<float>(q), hint).point;
       hint = closest.face;
       if (closest.face == SurfacePoint::kNone) continue;
       const Vec3d p = Vec3Cast<double>(closest.position);
-      const Vec3d normal = DirectionBetween(q, p, tiny, mesh_, closest.face);
-      backward[i] = {own[i].face, own[i].weights, normal, Dot(normal, q - p), own[i].share};
+      const Vec3d normal = DirectionBetween(q, p, kTiny * diagonal_, mesh_, closest.face);
+      result[i] = {samples[i].face, samples[i].weights, normal, Dot(normal, q - p), samples[i].share};
     }
   });
-  Add(backward, mesh, neighbors, &model.backward, &model);
-  return model;
+  return result;
 }
 
 }  // namespace lacerta

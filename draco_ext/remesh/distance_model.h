@@ -38,6 +38,9 @@ struct DistanceModel {
   std::vector<Symmetric3> off_diagonal;  // #E: the block between the ends of an edge
 };
 
+struct AreaSample;
+struct FitResidual;
+
 // The input, sampled and ready to be measured against.
 class FitTarget {
  public:
@@ -54,6 +57,10 @@ class FitTarget {
   // target is large, as DecodedDistance takes it.
   DistanceModel ModelAt(const TriangleMesh& mesh, const MeshNeighbors& neighbors) const;
 
+  // The larger of forward and backward at `mesh` alone, by the target's samples and as many on `mesh`, however many triangles it has. Several
+  // times cheaper, and no neighbors are needed.
+  double DistortionAt(const TriangleMesh& mesh) const;
+
   double diagonal() const { return diagonal_; }
   const TriangleMesh& mesh() const { return mesh_; }
 
@@ -62,6 +69,9 @@ class FitTarget {
     Vec3f position;
     double share = 0;  // of the area
   };
+
+  std::vector<FitResidual> Forward(const TriangleMesh& mesh, const TriangleTree& tree) const;
+  std::vector<FitResidual> Backward(const TriangleMesh& mesh, const std::vector<AreaSample>& samples) const;
 
   const TriangleMesh& mesh_;
   TriangleTree tree_;

@@ -12,6 +12,10 @@ namespace {
 
 using LatticePoint = std::array<int32_t, 3>;
 
+int32_t Round(double x) { return static_cast<int32_t>(std::lround(x)); }
+
+LatticePoint NearestPoint(const Vec3d& p) { return {Round(p.x), Round(p.y), Round(p.z)}; }
+
 // Coordinate descent over lattice points.
 class LatticeDescent {
  public:
@@ -21,7 +25,7 @@ class LatticeDescent {
     moves_.resize(mesh.positions.size());
     for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
       const Vec3d exact = (Vec3Cast<double>(mesh.positions[v]) - origin_) * (1 / rate_.step);
-      lattice_.push_back({Round(exact.x), Round(exact.y), Round(exact.z)});
+      lattice_.push_back(NearestPoint(exact));
       moves_[v] = MoveTo(v, lattice_[v]);
     }
   }
@@ -44,8 +48,6 @@ class LatticeDescent {
   }
 
  private:
-  static int32_t Round(double x) { return static_cast<int32_t>(std::lround(x)); }
-
   Vec3d MoveTo(uint32_t v, const LatticePoint& p) const {
     return origin_ + Vec3d{1.0 * p[0], 1.0 * p[1], 1.0 * p[2]} * rate_.step - Vec3Cast<double>(mesh_.positions[v]);
   }
@@ -66,7 +68,7 @@ class LatticeDescent {
     LatticePoint best = current;
     double best_cost = Cost(v, slope, best) + CostOfTurned(current_turned);
     const Vec3d exact = (Vec3Cast<double>(mesh_.positions[v]) + optimum - origin_) * (1 / rate_.step);
-    for (const LatticePoint& center : {current, LatticePoint{Round(exact.x), Round(exact.y), Round(exact.z)}}) {
+    for (const LatticePoint& center : {current, NearestPoint(exact)}) {
       for (int i = 0; i < 27; ++i) {
         const LatticePoint p{center[0] + i % 3 - 1, center[1] + i / 3 % 3 - 1, center[2] + i / 9 - 1};
         if (SquaredNorm(MoveTo(v, p)) > kFarthest * kFarthest * rate_.step * rate_.step) continue;
@@ -166,6 +168,17 @@ TriangleMesh LatticeMesh::ToMesh() const {
     result.positions.push_back(
         {origin.x + step * static_cast<float>(p[0]), origin.y + step * static_cast<float>(p[1]), origin.z + step * static_cast<float>(p[2])});
   }
+  return result;
+}
+
+LatticeMesh NearestOnLattice(const TriangleMesh& mesh, double step) {
+  LatticeMesh result;
+  result.origin = BoundsOf(mesh.positions).low;
+  result.step = static_cast<float>(step);
+  result.triangles = mesh.triangles;
+  result.lattice.reserve(mesh.positions.size());
+  const Vec3d origin = Vec3Cast<double>(result.origin);
+  for (const Vec3f& p : mesh.positions) result.lattice.push_back(NearestPoint((Vec3Cast<double>(p) - origin) * (1 / static_cast<double>(result.step))));
   return result;
 }
 

@@ -38,6 +38,9 @@ struct LatticeMesh {
   TriangleMesh ToMesh() const;  // positions as Draco's decoder computes them, up to rounding
 };
 
+// Every vertex at the lattice point next to it. The lattice begins at the lower corner of the mesh. step: as below.
+LatticeMesh NearestOnLattice(const TriangleMesh& mesh, double step);
+
 // Rounds `mesh`, at which `model` was made, to the lattice of step rate.step: each vertex in turn to the point near it that is best
 // by the model and the bits, in a few sweeps. The lattice begins at the lower corner of the mesh. step: > 0, and at least 2^-23 of
 // the largest side of the mesh.

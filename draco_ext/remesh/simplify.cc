@@ -316,8 +316,9 @@ void Simplifier::Run() {
       queue_.Push({kPinchPenalty * edge.cost, edge.u, edge.v, edge.version, true});
       continue;
     }
+    if (effect == Effect::kForbidden) continue;  // for good: what could change that changes an end, too, which brings the edge again
     const bool pinches = effect == Effect::kPinches;
-    if (effect == Effect::kForbidden || AnyTurnsOver(edge.u, edge.v, placement.position, around_u) || AnyTurnsOver(edge.v, edge.u, placement.position, around_v) ||
+    if (AnyTurnsOver(edge.u, edge.v, placement.position, around_u) || AnyTurnsOver(edge.v, edge.u, placement.position, around_v) ||
         LosesHeld(edge.u, edge.v, around_u) || (pinches && (IsNearHeld(around_u) || IsNearHeld(around_v)))) {
       queue_.Block(edge);
       continue;

@@ -4,6 +4,7 @@ import argparse
 import csv
 import json
 import math
+import multiprocessing
 import os
 import resource
 import subprocess
@@ -67,6 +68,12 @@ def run_with_peak(command):
         return json.load(out), seconds, usage.ru_utime + usage.ru_stime, 1024 * usage.ru_maxrss
 
 
+def in_own_process(function, *arguments):
+    """What a function returns, called in a process of its own: what a process takes before it becomes a command counts as the command's memory."""
+    with multiprocessing.Pool(1) as pool:
+        return pool.apply(function, arguments)
+
+
 def pack_and_check(lacerta, mesh, *options):
     """Packs a mesh file as a stream, unpacks the file again and measures that against the mesh. The measuring takes other
     samples than the encoder took, so that it checks its report."""
@@ -114,6 +121,23 @@ def fewest_bytes(peer_csv, peer, psnr):
 def geometric_mean(values):
     values = [v for v in values if v]
     return math.exp(sum(map(math.log, values)) / len(values)) if values else None
+
+
+def slope(rows, size, what):
+    """Of the line nearest to ln(what) over ln(size), and where it passes at a size of one; None of fewer than two sizes."""
+    points = [(math.log(r[size]), math.log(r[what])) for r in rows]
+    if not points:
+        return None
+    mean_x, mean_y = (sum(values) / len(points) for values in zip(*points))
+    square = sum((x - mean_x) ** 2 for x, _ in points)
+    if square == 0:
+        return None
+    steepness = sum((x - mean_x) * (y - mean_y) for x, y in points) / square
+    return steepness, mean_y - steepness * mean_x
+
+
+def verdict(is_met, what, of=()):
+    return f"- {'met' if is_met else '**missed**'}: {what}{': ' if of else ''}{', '.join(of)}"
 
 
 def shown(value, digits=2):

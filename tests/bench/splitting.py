@@ -1,8 +1,9 @@
 """Meshes with every triangle split in four, for the tables that ask for larger ones than there are."""
 
 import math
-import multiprocessing
 import struct
+
+import measuring as m
 
 
 def read_ply(path):
@@ -105,6 +106,5 @@ def prepare(data, name, folder, extension="ply"):
 
 
 def prepared(*arguments):
-    """The same in a process of its own: what a process takes before it becomes a command counts as the command's memory."""
-    with multiprocessing.Pool(1) as pool:
-        return pool.apply(prepare, arguments)
+    """The same in a process of its own."""
+    return m.in_own_process(prepare, *arguments)

@@ -334,6 +334,20 @@ TriangleMesh TouchingBoxes(int n) {
   return mesh;
 }
 
+TriangleMesh Scattered(const TriangleMesh& piece, uint32_t count) {
+  std::mt19937 random(count);
+  const auto coordinate = [&] { return static_cast<float>(random() % 1000001) / 500000 - 1; };
+  const float radius = 0.6f / std::cbrt(static_cast<float>(count));
+  TriangleMesh mesh;
+  for (uint32_t i = 0; i < count; ++i) {
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    const float x = coordinate(), y = coordinate(), z = coordinate();
+    for (const Vec3f& p : piece.positions) mesh.positions.push_back(Vec3f{x, y, z} + p * radius);
+    for (const Triangle& t : piece.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return mesh;
+}
+
 std::vector<NamedShape> AllShapes() {
   const auto closed = [](std::string name, TriangleMesh mesh, int genus) {
     return NamedShape{std::move(name), std::move(mesh), true, true, 0, genus};

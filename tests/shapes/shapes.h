@@ -69,6 +69,10 @@ TriangleMesh TouchingBoxes(int n);
 // small part of the area, as letters on a plate have them.
 TriangleMesh SpheresOverAPlate(int num_spheres, float radius);
 
+// `count` copies of a piece that fits into the unit sphere, at random places of the cube from -1 to 1, and as large against the space
+// between them whatever their number.
+TriangleMesh Scattered(const TriangleMesh& piece, uint32_t count);
+
 // A shape and what is true of it.
 struct NamedShape {
   std::string name;

@@ -148,6 +148,26 @@ TEST(EncodeRobustnessTest, TenThousandQuadsAreEncoded) {
   EXPECT_EQ(Encode(mesh, LevelChoice::kWhereTheyPay), "");
 }
 
+// Twice the components take twice the time, about.
+TEST(EncodeRobustnessTest, TimeGoesWithTheNumberOfComponents) {
+  const auto seconds = [](uint32_t num_components) {
+    const TriangleMesh mesh = shapes::Scattered(shapes::Tetrahedron(), num_components);
+    const double begin = static_cast<double>(std::clock());
+    EncodeOptions options = Options(LevelChoice::kWhereTheyPay);
+    options.target.value = 66;
+    const EncodedMesh encoded = EncodeMesh(mesh, options).value();
+    const double end = static_cast<double>(std::clock());
+    EXPECT_GE(encoded.report.levels.back().psnr, 66);
+    EXPECT_LE(encoded.report.levels.back().psnr, 68);  // few steps are tried
+    EXPECT_LT(static_cast<double>(encoded.stream.size()), 9.5 * num_components);
+    return (end - begin) / CLOCKS_PER_SEC;
+  };
+  const double once = seconds(20'000), twice = seconds(40'000);
+  EXPECT_LT(twice, kMostSeconds / 2);
+  EXPECT_LT(twice, 4 * once);
+  EXPECT_GT(twice, 1.2 * once);
+}
+
 // Every query of a closest point looks at a share of all triangles here, so that there may not be many queries.
 TEST(EncodeRobustnessTest, SoupsAreEncodedAsTheyAre) {
   for (const uint32_t num_triangles : {1'500u, 20'000u}) {

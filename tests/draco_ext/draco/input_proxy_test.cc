@@ -61,6 +61,44 @@ TEST_F(InputProxyTest, IsMadeOfPartsWhereThoseAreNearEnough) {
   }
 }
 
+// Each keeps a triangle: sizes below their number need not be tried, nor those above it that are no halves.
+TEST_F(InputProxyTest, IsNotLookedForAmongFewerTrianglesThanComponents) {
+  InputProxyOptions options;
+  options.fewest_triangles = 64;
+  std::optional<SimplificationSequence> whole;
+  const TriangleMesh soup = shapes::TriangleSoup(3);
+  const SurfaceDistanceMeter of_soup = SurfaceDistanceMeter::Create(soup).value();
+  EXPECT_FALSE(InputProxy(soup, of_soup, AtPsnr(10), options, &whole).has_value());
+  EXPECT_FALSE(whole.has_value());  // not even simplified
+  const TriangleMesh pieces = shapes::Scattered(shapes::Icosphere(1), 300);
+  const SurfaceDistanceMeter of_pieces = SurfaceDistanceMeter::Create(pieces).value();
+  const std::optional<TriangleMesh> proxy = InputProxy(pieces, of_pieces, AtPsnr(20), options, &whole);
+  ASSERT_TRUE(proxy.has_value());
+  EXPECT_GE(proxy->triangles.size(), 300u);
+  EXPECT_LE(proxy->triangles.size(), 1200u);
+  EXPECT_FALSE(whole.has_value());
+}
+
+TEST_F(InputProxyTest, HandsOverWhatWasSimplifiedInVain) {
+  InputProxyOptions options;
+  options.fewest_triangles = 1000;
+  std::optional<SimplificationSequence> whole;
+  EXPECT_FALSE(InputProxy(mesh_, meter_, AtPsnr(120), options, &whole).has_value());
+  ASSERT_TRUE(whole.has_value());
+  EXPECT_EQ(whole->MeshWith(3000).positions, SimplificationSequence(mesh_).MeshWith(3000).positions);
+  whole.reset();
+  EXPECT_TRUE(InputProxy(mesh_, meter_, AtPsnr(40), options, &whole).has_value());
+  EXPECT_FALSE(whole.has_value());
+}
+
+TEST_F(InputProxyTest, SequenceIsThatOfTheMesh) {
+  const ResolvedTarget target = AtPsnr(40);
+  ProxiedInput input(mesh_, meter_, target);
+  EXPECT_EQ(&input.Mesh(), &mesh_);
+  EXPECT_EQ(&input.Sequence(), &input.Sequence());
+  EXPECT_EQ(input.Sequence().num_input_triangles(), mesh_.triangles.size());
+}
+
 TEST_F(InputProxyTest, BytesAskForWhatTheyUsuallyBring) {
   InputProxyOptions options;
   options.fewest_triangles = 20'000;

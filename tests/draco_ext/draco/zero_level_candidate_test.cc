@@ -73,5 +73,23 @@ TEST_F(ZeroLevelCandidateTest, TheInputNeedsNoFit) {
   EXPECT_GT(coding.distortion, step * step / 1200);
 }
 
+// More triangles than are fitted are put onto the lattice as they are.
+TEST_F(ZeroLevelCandidateTest, LargeMeshesAreRounded) {
+  const TriangleMesh large = shapes::BumpySphere(6, 0.2f);
+  ASSERT_GT(large.triangles.size(), 60'000u);
+  const double off = SquaredDistance(large);
+  ZeroLevelCandidate candidate(target_, large, Source::kSimplified);
+  EXPECT_NEAR(candidate.fit_distortion(), off, 0.1 * off);
+  candidate.FitForRate(off, 2);
+  EXPECT_NEAR(candidate.fit_distortion(), off, 0.1 * off);
+  const double step = 4e-3;
+  const ZeroLevelCandidate::Coding coding = candidate.Code(step, 2, CodingEffort::kQuick).value();
+  EXPECT_EQ(coding.coded.mesh.triangles.size(), large.triangles.size());
+  const double measured = SquaredDistance(coding.coded.mesh);
+  EXPECT_NEAR(coding.distortion, measured, 0.1 * measured);
+  EXPECT_GT(measured, step * step / 1200);
+  EXPECT_LT(measured, off + step * step / 12);
+}
+
 }  // namespace
 }  // namespace lacerta

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <map>
 #include <random>
 
@@ -219,10 +219,9 @@ TEST(Decimate, RemovesVerticesOfThreeFaces) {
 TEST(Decimate, VerticesOfManyFacesTakeNoQuadraticTime) {
   for (const uint32_t n : {10'000u, 65'000u}) {  // a Topology holds hardly more
     const TriangleMesh mesh = DoublePyramid(n);
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();  // of the processor: sanitizers on a busy machine take long enough
     const CollapseHistory history = DecimateTo(mesh, 20);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-    EXPECT_LT(seconds.count(), 30);  // quadratic: hours
+    EXPECT_LT(std::clock() - begin, 30 * CLOCKS_PER_SEC);  // quadratic: hours
     EXPECT_EQ(VerticesLeft(mesh, history), 20u);
     ExpectClosedManifold(mesh, history, history.num_collapses(), 2);
   }

@@ -42,6 +42,17 @@ TEST(DistanceModelTest, AgreesWithTheMeter) {
   EXPECT_NEAR(std::sqrt(model.backward), distance.backward.rms, 0.03 * distance.backward.rms);
 }
 
+// Alone it is measured by as few samples as the target has, even where the mesh has more triangles.
+TEST(DistanceModelTest, DistortionAloneAgreesWithTheMeter) {
+  const TriangleMesh mesh = shapes::BumpySphere(5, 0.2f);
+  const FitTarget target(mesh, 8000);
+  for (const TriangleMesh& other : {SimplificationSequence(mesh).MeshWith(300), shapes::BumpySphere(5, 0.21f)}) {
+    const SurfaceDistance distance = MeasureSurfaceDistance(mesh, other, SurfaceDistanceOptions::RmsOnly(20000)).value();
+    EXPECT_NEAR(std::sqrt(target.DistortionAt(other)), distance.Rms(), 0.03 * distance.Rms());
+  }
+  EXPECT_LT(std::sqrt(target.DistortionAt(mesh)), 1e-6 * target.diagonal());
+}
+
 // With a few hundred samples, of which an area of 1 % would have a handful.
 TEST(DistanceModelTest, SeesSmallPartsOfManyFaces) {
   const TriangleMesh mesh = shapes::SpheresOverAPlate(30, 0.005f), larger = shapes::SpheresOverAPlate(30, 0.006f);
@@ -58,6 +69,7 @@ TEST(DistanceModelTest, TakesAMeshWithoutAreaForFarOff) {
   const TriangleMesh without_area{{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}, {{0, 1, 2}}};
   const FitTarget target(mesh, 2000);
   EXPECT_DOUBLE_EQ(target.ModelAt(without_area, MeshNeighbors(without_area)).backward, target.diagonal() * target.diagonal());
+  EXPECT_DOUBLE_EQ(target.DistortionAt(without_area), target.diagonal() * target.diagonal());
 }
 
 TEST(DistanceModelTest, ForetellsWhatAMoveChanges) {

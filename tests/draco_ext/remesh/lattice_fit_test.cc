@@ -46,6 +46,23 @@ TEST_F(LatticeFitTest, BeatsRoundingByFar) {
   EXPECT_GT(descended, fit);
 }
 
+TEST_F(LatticeFitTest, NearestPointsAreWithinHalfAStep) {
+  const double step = 0.03;
+  const LatticeMesh lattice = NearestOnLattice(mesh_, step);
+  EXPECT_EQ(lattice.triangles, mesh_.triangles);
+  EXPECT_FLOAT_EQ(lattice.step, static_cast<float>(step));
+  const TriangleMesh result = lattice.ToMesh();
+  double farthest = 0;
+  for (size_t v = 0; v < result.positions.size(); ++v) {
+    for (int c = 0; c < 3; ++c) farthest = std::max(farthest, static_cast<double>(std::fabs(result.positions[v][c] - mesh_.positions[v][c])));
+  }
+  EXPECT_LT(farthest, 0.501 * step);
+  EXPECT_GT(farthest, 0.48 * step);
+  const double squared = DistanceOf(result) * DistanceOf(result);  // of a coordinate step^2 / 12, of a point within a face less
+  EXPECT_LT(squared, step * step / 12);
+  EXPECT_GT(squared, step * step / 48);
+}
+
 TEST_F(LatticeFitTest, StaysNearAndBeginsAtZero) {
   const double step = 0.03;
   const LatticeMesh lattice = Fit({step, 0});

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <random>
@@ -270,9 +270,9 @@ TEST(MakeManifold, ManyFacesAtOneEdgeTakeNoLonger) {
     book.positions.push_back({static_cast<float>(std::cos(a)), static_cast<float>(std::sin(a)), 0.5f});
     book.triangles.push_back(i < kFaces / 2 ? Triangle{0, 1, 2 + i} : Triangle{1, 0, 2 + i});
   }
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   const ManifoldMesh made = MakeManifold(book);
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20.0);
+  EXPECT_LT(std::clock() - start, 20 * CLOCKS_PER_SEC);
   EXPECT_TRUE(BuildTopology(static_cast<uint32_t>(made.mesh.positions.size()), made.mesh.triangles).ok());
   EXPECT_GE(made.report.components, kFaces / 2);  // pairs; a few find their partner taken
   EXPECT_LT(made.report.components, kFaces / 2 + kFaces / 20);

@@ -1,0 +1,16 @@
+// How many pieces a mesh is of.
+#ifndef LACERTA_REMESH_COMPONENTS_H_
+#define LACERTA_REMESH_COMPONENTS_H_
+
+#include <cstddef>
+
+#include "lacerta/mesh.h"
+
+namespace lacerta {
+
+// Sets of triangles that hang together by vertices. mesh: indices in range. Almost linear time.
+size_t CountComponents(const TriangleMesh& mesh);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_REMESH_COMPONENTS_H_
