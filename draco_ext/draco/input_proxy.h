@@ -47,7 +47,7 @@ std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const Surfac
 class ProxiedInput {
  public:
   // As for InputProxy.
-  ProxiedInput(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, const InputProxyOptions& options)
+  ProxiedInput(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, const InputProxyOptions& options = {})
       : cleaned_(cleaned), meter_(meter), target_(target), options_(options) {}
 
   // Makes the proxy when first called. Not for several threads at a time.
