@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cctype>
 #include <cstdint>
 #include <cstdio>
@@ -277,7 +278,8 @@ int RunPack(PackArguments arguments) {
                                                   : LevelChoice::kWhereTheyPay;
   options.mode = arguments.mode == "paper" ? EncodeMode::kPaper : EncodeMode::kDefault;
   options.effort = arguments.effort == "fast" ? Effort::kFast : arguments.effort == "best" ? Effort::kBest : Effort::kNormal;
-  options.memory = memory;
+  const auto at_a_time = std::min<uint64_t>(static_cast<uint64_t>(std::max(arguments.batch.jobs, 1)), std::max<size_t>(items.value().size(), 1));
+  options.memory = memory / at_a_time;
   if (single) options.progress = progress.Callback();
   return RunBatch(items.value(), arguments.batch,
                   [&](const BatchItem& item) { return PackFile(arguments, options, item); });
