@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cctype>
 #include <cstdint>
 #include <cstdio>
@@ -277,7 +278,8 @@ int RunPack(PackArguments arguments) {
                                                   : LevelChoice::kWhereTheyPay;
   options.mode = arguments.mode == "paper" ? EncodeMode::kPaper : EncodeMode::kDefault;
   options.effort = arguments.effort == "fast" ? Effort::kFast : arguments.effort == "best" ? Effort::kBest : Effort::kNormal;
-  options.memory = memory;
+  const auto at_a_time = std::min<uint64_t>(static_cast<uint64_t>(std::max(arguments.batch.jobs, 1)), std::max<size_t>(items.value().size(), 1));
+  options.memory = memory / at_a_time;
   if (single) options.progress = progress.Callback();
   return RunBatch(items.value(), arguments.batch,
                   [&](const BatchItem& item) { return PackFile(arguments, options, item); });
@@ -345,7 +347,7 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   pack->add_flag("--repair", arguments->repair,
                  "Mend numbers that are not finite instead of refusing the file, and tell so: vertices without a position go with their triangles, "
                  "other values follow those beside them");
-  pack->add_option("--memory", arguments->memory, "At most this much memory, such as 800M or 12G (default: what is free): large surfaces make do with less, down to 36 bytes a triangle; "
+  pack->add_option("--memory", arguments->memory, "At most this much memory, such as 800M or 12G (default: what is free): large surfaces make do with less, down to 40 bytes a triangle; "
                    "what needs more fails by name")
       ->transform(CLI::AsSizeValue(false));
   AddBatchOptions(pack, &arguments->batch);
