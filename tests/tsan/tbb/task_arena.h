@@ -13,9 +13,9 @@ class task_arena {
  public:
   explicit task_arena(int threads) : threads_(threads) {}
   template <typename Call>
-  void execute(const Call& call) {
+  auto execute(const Call& call) -> decltype(call()) {
     const global_control control(global_control::max_allowed_parallelism, static_cast<size_t>(threads_));
-    call();
+    return call();
   }
 
  private:
