@@ -12,7 +12,7 @@ constexpr uint64_t kDense = 2'000'000;
 // Bytes, seen with docs/results/memory_table.md. Of any encoding, and of the two threads that simplify parts; of a triangle of the input beside the mesh: in the
 // usual way, measured by way of LeanTree, and while parts are simplified beside that tree.
 constexpr uint64_t kAny = 80'000'000, kParts = 100'000'000;
-constexpr uint64_t kPerUsual = 127, kPerLean = 11, kPerReduced = 22;
+constexpr uint64_t kPerUsual = 127, kPerLean = 11, kPerReduced = 26;
 // Of a triangle of a run of simplification, of what is remeshed, and of a mesh whose subdivision is looked for.
 constexpr uint64_t kPerSimplified = 600, kPerRemeshed = 3000, kPerSubdivided = 250;
 // What stands for an input has at least so many triangles, and takes so many bytes: fewer would not take less memory in all.

@@ -15,7 +15,7 @@ auto WithinMemory(const Work& work) -> decltype(work()) {
     return work();
   } catch (const std::bad_alloc&) {
     return LimitExceeded(
-        "not enough memory: a surface takes at least 170 MB and 40 bytes a triangle, one with attributes about 900; simplify it first, or cut it into several meshes");
+        "not enough memory: a surface takes at least 170 MB and 45 bytes a triangle, one with attributes about 900; simplify it first, or cut it into several meshes");
   }
 }
 

@@ -347,7 +347,7 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   pack->add_flag("--repair", arguments->repair,
                  "Mend numbers that are not finite instead of refusing the file, and tell so: vertices without a position go with their triangles, "
                  "other values follow those beside them");
-  pack->add_option("--memory", arguments->memory, "At most this much memory, such as 800M or 12G (default: what is free): large surfaces make do with less, down to 40 bytes a triangle; "
+  pack->add_option("--memory", arguments->memory, "At most this much memory, such as 800M or 12G (default: what is free): large surfaces make do with less, down to 45 bytes a triangle; "
                    "what needs more fails by name")
       ->transform(CLI::AsSizeValue(false));
   AddBatchOptions(pack, &arguments->batch);
