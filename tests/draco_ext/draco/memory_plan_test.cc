@@ -53,10 +53,10 @@ TEST(MemoryPlan, NamesTheLeastThatWouldDo) {
   const uint64_t triangles = 22 * kMillion;
   const Status status = PlanMemory(triangles / 2, triangles, 500 * kMillion).status();
   EXPECT_EQ(status.code(), StatusCode::kLimitExceeded);
-  EXPECT_THAT(status.message(), HasSubstr("not enough memory: 22000000 triangles take at least 981 MB"));
+  EXPECT_THAT(status.message(), HasSubstr("not enough memory: 22000000 triangles take at least 1069 MB"));
   EXPECT_THAT(status.message(), HasSubstr("500 are allowed"));
-  EXPECT_FALSE(PlanMemory(triangles / 2, triangles, 978 * kMillion).ok());
-  EXPECT_TRUE(PlanMemory(triangles / 2, triangles, 981 * kMillion).ok());
+  EXPECT_FALSE(PlanMemory(triangles / 2, triangles, 1066 * kMillion).ok());
+  EXPECT_TRUE(PlanMemory(triangles / 2, triangles, 1069 * kMillion).ok());
   EXPECT_TRUE(PlanMemory(5000, 10'000, kMillion).ok());  // small ones are tried
 }
 
