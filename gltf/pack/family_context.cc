@@ -59,7 +59,7 @@ std::vector<const Source*> FamilyContext::Sources() const {
 std::vector<TargetMix> FamilyContext::Mixes() const {
   size_t num_targets = 0;
   for (const std::vector<MorphTarget>* targets : Targets()) num_targets = std::max(num_targets, targets->size());
-  return FindTargetMixes(*scene->document, Sources(), num_targets);
+  return FindTargetMixes(*scene->document, scene->weight_tracks, Sources(), num_targets);
 }
 
 StatusOr<std::optional<Skin>> FamilyContext::FindSkin() const {

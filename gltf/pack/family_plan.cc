@@ -140,26 +140,17 @@ EncodeOptions OptionsOf(const FamilyContext& context) {
 // A stream of the shape alone, of a family of one primitive; where none comes of it, the report says why. Fails where the options are at fault.
 Status PlanProgressive(const FamilyContext& context, PrimitivePlan* plan) {
   const EncodeOptions options = OptionsOf(context);
-  PrimitiveReport& report = plan->report;
   StatusOr<EncodedMesh> encoded = EncodeMesh(Surface(*context.Primitives()[0]), options);
   if (encoded.status().code() == StatusCode::kInvalidArgument) return encoded.status().WithContext(PlaceName(*context.scene->document, plan->places[0]));
   if (!encoded.ok()) {
-    report.reason = encoded.status().message();
+    plan->report.reason = encoded.status().message();
     return Status();
   }
   const EncodedMesh& mesh = encoded.value();
   if (mesh.part_sizes.empty() || mesh.part_sizes.size() != mesh.report.levels.size()) {
     return InternalError("the encoder reported another number of levels than it wrote");
   }
-  report.storage = PrimitiveStorage::kProgressive;
-  report.reason = mesh.report.reason;
-  report.bytes_after = mesh.stream.size();
-  report.encode = mesh.report;
-  report.target_error = options.target.kind == EncodeTarget::Kind::kPsnr
-                            ? DistanceOfPsnr(options.target.value, mesh.report.diagonal)
-                        : options.target.kind == EncodeTarget::Kind::kError ? options.target.value * mesh.report.diagonal
-                                                                            : 0.0;
-  plan->progressive = std::move(encoded).value();
+  TakeStream(std::move(encoded).value(), options.target, plan);
   return Status();
 }
 

@@ -4,7 +4,6 @@
 
 #include "draco/memory_plan.h"
 #include "lacerta/codec.h"
-#include "lacerta/surface_distance.h"
 #include "pack/single_mesh.h"
 
 namespace lacerta {
@@ -18,20 +17,6 @@ bool IsBare(const FileMesh& mesh) {
 uint64_t PlainBytes(const TriangleMesh& mesh) {
   const uint64_t bytes_of_index = mesh.positions.size() < 0xffff ? 2 : 4;
   return sizeof(Vec3f) * mesh.positions.size() + 3 * bytes_of_index * mesh.triangles.size();
-}
-
-// In model units; 0 where bytes are asked for.
-double TargetError(const EncodeTarget& target, double diagonal) {
-  switch (target.kind) {
-    case EncodeTarget::Kind::kPsnr:
-      return DistanceOfPsnr(target.value, diagonal);
-    case EncodeTarget::Kind::kError:
-      return target.value * diagonal;
-    case EncodeTarget::Kind::kDistance:
-      return target.value;
-    default:
-      return 0;
-  }
 }
 
 }  // namespace
@@ -50,16 +35,10 @@ StatusOr<LargeShape> PlanLargeShape(FileMesh mesh, const std::string& name, cons
   PrimitivePlan& plan = shape.plans[0];
   plan.places = plan.geometries = {Place()};
   plan.weight = 1;
-  PrimitiveReport& report = plan.report;
-  report.name = name;
-  report.bytes_before = PlainBytes(surface);
-  LACERTA_ASSIGN_OR_RETURN(plan.progressive, EncodeMesh(std::move(surface), options.encode));
-  const EncodedMesh& encoded = *plan.progressive;
-  report.storage = PrimitiveStorage::kProgressive;
-  report.bytes_after = encoded.stream.size();
-  report.reason = encoded.report.reason;
-  report.encode = encoded.report;
-  report.target_error = TargetError(options.encode.target, encoded.report.diagonal);
+  plan.report.name = name;
+  plan.report.bytes_before = PlainBytes(surface);
+  LACERTA_ASSIGN_OR_RETURN(EncodedMesh encoded, EncodeMesh(std::move(surface), options.encode));
+  TakeStream(std::move(encoded), options.encode.target, &plan);
   return shape;
 }
 

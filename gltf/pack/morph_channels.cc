@@ -176,15 +176,13 @@ Status MorphChannels::Measure(const AttributedMesh& mesh, uint64_t num_samples, 
   }
   size_t next = 0;  // of those apart
   for (size_t a = 0; a < mesh.attributes.size(); ++a) {
-    if (!IsOfDirections(mesh.attributes[a])) continue;
     AttributeError& error = errors->attributes[a];
+    if (IsOfPositions(mesh.attributes[a])) error.rms = error.rms_99 = 0.0;  // raised by mixes below
+    if (!IsOfDirections(mesh.attributes[a])) continue;
     error = apart.attributes[next++];
     for (size_t t = 1; t < mesh.attributes[a].components / 3; ++t, ++next) {
       if (apart.attributes[next].rms_99 > error.rms_99) error = apart.attributes[next];
     }
-  }
-  for (size_t a = 0; a < mesh.attributes.size(); ++a) {
-    if (IsOfPositions(mesh.attributes[a])) errors->attributes[a].rms = errors->attributes[a].rms_99 = 0.0;
   }
   for (size_t m = 0; m < positions_->mixes().size(); ++m) {
     const TargetMix& mix = positions_->mixes()[m];

@@ -262,9 +262,7 @@ StatusOr<PackResult> PackGltf(Span<const uint8_t> asset, const PackOptions& opti
       LACERTA_ASSIGN_OR_RETURN(notes, RepairDocument(&document));
     }
     EmbedImages(options.embed_images ? ImageFiles::kEmbed : ImageFiles::kReferTo, &document, &notes);
-    LACERTA_ASSIGN_OR_RETURN(PackResult result, PackDocument(std::move(document), options));
-    result.report.notes.insert(result.report.notes.begin(), notes.begin(), notes.end());
-    return result;
+    return WithNotes(PackDocument(std::move(document), options), notes);
   });
 }
 

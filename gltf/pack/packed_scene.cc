@@ -1,5 +1,6 @@
 #include "pack/packed_scene.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "pack/influence_slots.h"
@@ -13,6 +14,8 @@ StatusOr<PackedScene> ReadPackedScene(const GltfDocument& document) {
   scene.texel_side = TexelSide(document);
   if (ArraySize(document.json, "skins") > 0) scene.poses = ScenePoses(document);
   LACERTA_ASSIGN_OR_RETURN(scene.sources, ReadSources(document));
+  const bool has_targets = std::any_of(scene.sources.begin(), scene.sources.end(), [](const Source& source) { return !source.targets.empty(); });
+  if (has_targets) scene.weight_tracks = ReadWeightTracks(document);
   std::vector<PlacedSurface> surfaces;
   std::vector<size_t> source_of;
   for (size_t i = 0; i < scene.sources.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "document/animation.h"
 #include "document/gltf_document.h"
 #include "document/scene_poses.h"
 #include "lacerta/status.h"
@@ -24,6 +25,7 @@ struct PackedScene {
   Families families;              // their members are indices into `sources`
   uint64_t texel_side = 1024;
   std::vector<ScenePose> poses;  // where there are skins
+  std::vector<WeightTrack> weight_tracks;  // where there are morph targets
 };
 
 // Refers to the document. Fails like ReadSources and FindFamilies.

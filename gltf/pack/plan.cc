@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "lacerta/surface_distance.h"
 #include "pack/family_plan.h"
 #include "pack/scene_budget.h"
 
@@ -183,6 +184,31 @@ StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const PackedScene& scene, cons
 }
 
 }  // namespace
+
+void TakeStream(EncodedMesh encoded, const EncodeTarget& target, PrimitivePlan* plan) {
+  const double diagonal = encoded.report.diagonal;
+  PrimitiveReport& report = plan->report;
+  report.storage = PrimitiveStorage::kProgressive;
+  report.reason = encoded.report.reason;
+  report.bytes_after = encoded.stream.size();
+  report.encode = encoded.report;
+  switch (target.kind) {
+    case EncodeTarget::Kind::kPsnr:
+      report.target_error = DistanceOfPsnr(target.value, diagonal);
+      break;
+    case EncodeTarget::Kind::kError:
+      report.target_error = target.value * diagonal;
+      break;
+    case EncodeTarget::Kind::kDistance:
+      report.target_error = target.value;
+      break;
+    case EncodeTarget::Kind::kBytes:
+    case EncodeTarget::Kind::kBitsPerVertex:
+      report.target_error = 0.0;
+      break;
+  }
+  plan->progressive = std::move(encoded);
+}
 
 StatusOr<std::vector<PrimitivePlan>> PlanPrimitives(const GltfDocument& document, const PackOptions& options) {
   LACERTA_ASSIGN_OR_RETURN(const PackedScene scene, ReadPackedScene(document));

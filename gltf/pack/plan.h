@@ -33,6 +33,9 @@ struct PrimitivePlan {
   std::vector<MorphTarget> targets;  // in the order of the vertices of `draco`
 };
 
+// Makes a stream of the shape alone the plan. target: what it was encoded for, not a share of a scene.
+void TakeStream(EncodedMesh encoded, const EncodeTarget& target, PrimitivePlan* plan);
+
 // Reads and encodes all primitives. Fails like PackGltf.
 StatusOr<std::vector<PrimitivePlan>> PlanPrimitives(const GltfDocument& document, const PackOptions& options);
 

@@ -6,8 +6,6 @@
 #include <set>
 #include <utility>
 
-#include "document/animation.h"
-
 namespace lacerta {
 namespace {
 
@@ -80,7 +78,8 @@ class MixesSeen {
 
 }  // namespace
 
-std::vector<TargetMix> FindTargetMixes(const GltfDocument& document, const std::vector<const Source*>& sources, size_t num_targets) {
+std::vector<TargetMix> FindTargetMixes(const GltfDocument& document, const std::vector<WeightTrack>& tracks, const std::vector<const Source*>& sources,
+                                       size_t num_targets) {
   MixesSeen seen(num_targets);
   std::set<uint64_t> meshes, nodes;
   for (const Source* source : sources) {
@@ -94,7 +93,7 @@ std::vector<TargetMix> FindTargetMixes(const GltfDocument& document, const std::
     nodes.insert(n);
     seen.Add(Find(node, "weights"));
   }
-  for (const WeightTrack& track : ReadWeightTracks(document)) {
+  for (const WeightTrack& track : tracks) {
     if (nodes.count(track.node) > 0) seen.Add(track);
   }
   return seen.Choose();

@@ -29,7 +29,10 @@ class TargetMixesTest : public ::testing::Test {
                                          {"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}}}}}});
   }
 
-  std::vector<TargetMix> Found() { return FindTargetMixes(ParseGltf(builder_.Glb(), "").value(), {&source_}, 3); }
+  std::vector<TargetMix> Found() {
+    const GltfDocument document = ParseGltf(builder_.Glb(), "").value();
+    return FindTargetMixes(document, ReadWeightTracks(document), {&source_}, 3);
+  }
 
   testing::AssetBuilder builder_;
   Source source_;
