@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -141,15 +142,15 @@ class ValueFit {
   // Chooses for each sample the side of the original whose value is nearest.
   void SetTargets(const std::vector<Sample>& samples, const GroupSurface& original, size_t index) {
     const MeshAttribute& attribute = original.mesh().attributes[index];
-    std::vector<double> value(columns_);
+    std::vector<double> value(columns_), here(columns_), target(columns_);
     std::vector<GroupSurface::Point> sides;
     std::vector<double> errors;
     for (const Sample& sample : samples) {
       if (nodes_[sample.face][0] == kNone || sample.near.empty() || !HasValue(attribute, sample.near[0])) continue;
-      const std::vector<double> here = ValueAt(sample, values_);
+      ValueAt(sample, &here);
       SidesOf(sample, index, &sides);
       double least = INFINITY;
-      std::vector<double> target(columns_);
+      std::fill(target.begin(), target.end(), 0.0);
       for (const GroupSurface::Point& side : sides) {
         InterpolateValue(attribute, side, value.data());
         double error = 0;
@@ -177,15 +178,8 @@ class ValueFit {
   // Conjugate gradients from the values that are there.
   void Solve() {
     constexpr int kIterations = 15;
-    diagonal_.assign(values_.size() / columns_, 0.0);
-    for (size_t i = 0; i < samples_.size(); ++i) {
-      for (size_t k = 0; k < 3; ++k) diagonal_[nodes_[samples_[i]->face][k]] += weights_[i] * Square(samples_[i]->weights[k]);
-    }
-    std::vector<double> residual(values_.size(), 0.0);
-    for (size_t i = 0; i < samples_.size(); ++i) {
-      const std::vector<double> here = ValueAt(*samples_[i], values_);
-      for (size_t c = 0; c < columns_; ++c) Spread(i, c, targets_[i * columns_ + c] - here[c], &residual);
-    }
+    SumProducts();
+    std::vector<double> residual = Residual();
     std::vector<double> direction(values_.size(), 0.0), moves(values_.size(), 0.0);
     double energy = 0, first_energy = 0;
     for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -244,39 +238,74 @@ class ValueFit {
   }
 
  private:
-  static double Square(float x) { return static_cast<double>(x) * static_cast<double>(x); }
-
-  std::vector<double> ValueAt(const Sample& sample, const std::vector<double>& values) const {
-    std::vector<double> value(columns_, 0.0);
+  void ValueAt(const Sample& sample, std::vector<double>* value) const {
+    std::fill(value->begin(), value->end(), 0.0);
     for (size_t k = 0; k < 3; ++k) {
-      const double* row = &values[nodes_[sample.face][k] * columns_];
-      for (size_t c = 0; c < columns_; ++c) value[c] += static_cast<double>(sample.weights[k]) * row[c];
+      const double* row = &values_[nodes_[sample.face][k] * columns_];
+      for (size_t c = 0; c < columns_; ++c) (*value)[c] += static_cast<double>(sample.weights[k]) * row[c];
     }
-    return value;
   }
 
-  void Spread(size_t sample, size_t column, double amount, std::vector<double>* sum) const {
-    for (size_t k = 0; k < 3; ++k) {
-      const double weight = weights_[sample] * static_cast<double>(samples_[sample]->weights[k]);
-      (*sum)[nodes_[samples_[sample]->face][k] * columns_ + column] += weight * amount;
+  // Of the samples of every face, what products of the weights of two corners come to; and of every node those of one corner with itself.
+  void SumProducts() {
+    products_.assign(nodes_.size(), {});
+    for (size_t i = 0; i < samples_.size(); ++i) {
+      Products& products = products_[samples_[i]->face];
+      const std::array<float, 3>& w = samples_[i]->weights;
+      for (size_t k = 0; k < 3; ++k) {
+        const double weight = weights_[i] * static_cast<double>(w[k]);
+        products.same[k] += weight * static_cast<double>(w[k]);
+        products.opposite[k] += weights_[i] * static_cast<double>(w[(k + 1) % 3]) * static_cast<double>(w[(k + 2) % 3]);
+      }
     }
+    diagonal_.assign(values_.size() / columns_, 0.0);
+    for (size_t f = 0; f < nodes_.size(); ++f) {
+      for (size_t k = 0; k < 3 && nodes_[f][0] != kNone; ++k) diagonal_[nodes_[f][k]] += products_[f].same[k];
+    }
+  }
+
+  std::vector<double> Residual() const {
+    std::vector<double> residual(values_.size(), 0.0), here(columns_);
+    for (size_t i = 0; i < samples_.size(); ++i) {
+      const Sample& sample = *samples_[i];
+      ValueAt(sample, &here);
+      for (size_t k = 0; k < 3; ++k) {
+        const double weight = weights_[i] * static_cast<double>(sample.weights[k]);
+        double* const sum = &residual[nodes_[sample.face][k] * columns_];
+        for (size_t c = 0; c < columns_; ++c) sum[c] += weight * (targets_[i * columns_ + c] - here[c]);
+      }
+    }
+    return residual;
   }
 
   std::vector<double> Multiply(const std::vector<double>& x) const {
     std::vector<double> result(x.size());
     for (size_t j = 0; j < x.size(); ++j) result[j] = kStiffness * diagonal_[j / columns_] * x[j];
-    for (size_t i = 0; i < samples_.size(); ++i) {
-      const std::vector<double> here = ValueAt(*samples_[i], x);
-      for (size_t c = 0; c < columns_; ++c) Spread(i, c, here[c], &result);
+    for (size_t f = 0; f < nodes_.size(); ++f) {
+      if (nodes_[f][0] == kNone) continue;
+      const Products& p = products_[f];
+      const std::array<size_t, 3> row = {nodes_[f][0] * columns_, nodes_[f][1] * columns_, nodes_[f][2] * columns_};
+      for (size_t c = 0; c < columns_; ++c) {
+        const double x0 = x[row[0] + c], x1 = x[row[1] + c], x2 = x[row[2] + c];
+        result[row[0] + c] += p.same[0] * x0 + p.opposite[2] * x1 + p.opposite[1] * x2;
+        result[row[1] + c] += p.opposite[2] * x0 + p.same[1] * x1 + p.opposite[0] * x2;
+        result[row[2] + c] += p.opposite[1] * x0 + p.opposite[0] * x1 + p.same[2] * x2;
+      }
     }
     return result;
   }
+
+  // Of corner k with itself, and of the two others.
+  struct Products {
+    std::array<double, 3> same{}, opposite{};
+  };
 
   const size_t columns_;
   std::vector<Triangle> nodes_;  // of the corners
   std::vector<double> values_, before_;
   std::vector<const Sample*> samples_;
   std::vector<double> weights_, targets_;  // of those
+  std::vector<Products> products_;  // of the faces
   std::vector<double> diagonal_;
 };
 
@@ -284,14 +313,14 @@ class ValueFit {
 
 void FitAttributes(const GroupSurface& original, const AttributeFitOptions& options, AttributedMesh* mesh) {
   const std::vector<Sample> samples = TakeSamples(*mesh, original, options);
-  for (size_t a = 0; a < mesh->attributes.size(); ++a) {
+  tbb::parallel_for(size_t{0}, mesh->attributes.size(), [&](size_t a) {
     const MeshAttribute& wanted = original.mesh().attributes[a];
     ValueFit fit(*mesh, mesh->attributes[a]);
     fit.SetTargets(samples, original, a);
     fit.Solve();
     if (wanted.kind == AttributeKind::kTextureCoordinates && wanted.components == 2) fit.KeepUnmirrored();
     fit.Write(&mesh->attributes[a], ValueRange(wanted));
-  }
+  });
   WeldExactly(mesh);
 }
 
