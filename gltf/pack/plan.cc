@@ -1,7 +1,5 @@
 #include "pack/plan.h"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -55,8 +53,7 @@ Status ForEachFamily(const PackedScene& scene, const PackOptions& options, const
     do together += NumVertices(scene, families[end++]);
     while (end < families.size() && !options.encode.progress && together + NumVertices(scene, families[end]) <= kMostTogether);
     std::vector<Status> done(end - first);
-    // Isolated, since a thread that waits for loops within a family would begin with another one meanwhile, and with the next in there.
-    ForEachBranch(done.size(), [&](size_t i) { tbb::this_task_arena::isolate([&] { done[i] = work(families[first + i]); }); });
+    ForEachBranch(done.size(), [&](size_t i) { done[i] = work(families[first + i]); });
     for (Status& status : done) LACERTA_RETURN_IF_ERROR(std::move(status));
   }
   return Status();
