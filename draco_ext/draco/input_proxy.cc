@@ -53,9 +53,9 @@ std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const Surfac
   if (num_components > most) return std::nullopt;  // each keeps a triangle
   const double psnr = TypicalPsnr(target, static_cast<double>(options.fewest_triangles) / 2);  // what bytes bring hardly depends on how dense the input is
   ProxySearch search(meter, DistanceOfPsnr(psnr, meter.diagonal()), options);
-  for (const uint32_t at_once : SizesInParts(options.first_at_once, options.most_at_once, num_triangles)) {
-    if (at_once >= options.most_as_a_whole || num_components >= at_once) continue;
-    const TriangleMesh reduced = SimplifyInParts(cleaned, at_once, options.part_triangles);
+  const uint32_t most_at_once = std::min(options.most_at_once, options.most_as_a_whole);
+  if (most_at_once <= half && most_at_once < options.most_as_a_whole && num_components < most_at_once) {
+    const TriangleMesh reduced = SimplifyInParts(cleaned, most_at_once, options.part_triangles);
     std::optional<TriangleMesh> proxy = search.FirstNearEnough(SimplificationSequence(reduced), std::min(reduced.triangles.size(), most));
     if (proxy) return proxy;
   }

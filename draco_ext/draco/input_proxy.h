@@ -16,9 +16,9 @@ namespace lacerta {
 
 struct InputProxyOptions {
   uint32_t fewest_triangles = 200'000;
-  // Inputs of at least twice that are simplified to so many part by part first (simplify_in_parts.h), which keeps memory per triangle low and all
-  // threads busy; where that is not near enough, to `most_at_once`, and only then as a whole.
-  uint32_t first_at_once = 400'000, most_at_once = 1'000'000;
+  // Inputs of at least twice that are simplified to so many part by part first (simplify_in_parts.h), which keeps memory per triangle low, and
+  // anew as a whole only where that is not near enough.
+  uint32_t most_at_once = 1'000'000;
   uint32_t part_triangles = 125'000;
   // What more triangles would take away from its distance, over what noise that simplification smooths away (error_floor.h) leaves of the
   // distance that the stream may have, at most.

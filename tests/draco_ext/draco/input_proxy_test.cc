@@ -61,23 +61,6 @@ TEST_F(InputProxyTest, IsMadeOfPartsWhereThoseAreNearEnough) {
   }
 }
 
-// Few triangles are looked for in a small reduction, more in a larger one.
-TEST_F(InputProxyTest, IsMadeOfTheFirstReductionThatIsNearEnough) {
-  InputProxyOptions large;
-  large.fewest_triangles = 1000;
-  large.most_at_once = 20'000;
-  large.part_triangles = 5000;
-  InputProxyOptions small = large;
-  small.first_at_once = 5000;
-  for (const double psnr : {45.0, 75.0}) {
-    const std::optional<TriangleMesh> first = InputProxy(mesh_, meter_, AtPsnr(psnr), small), second = InputProxy(mesh_, meter_, AtPsnr(psnr), large);
-    ASSERT_TRUE(first.has_value() && second.has_value()) << psnr;
-    EXPECT_LE(DistanceOf(*first), 1.5 * small.share * DistanceOfPsnr(psnr, meter_.diagonal()));
-    EXPECT_EQ(first->triangles != second->triangles, first->triangles.size() <= 5000) << psnr;
-    EXPECT_EQ(first->triangles.size() <= 5000, psnr < 60);
-  }
-}
-
 // Each keeps a triangle: sizes below their number need not be tried, nor those above it that are no halves.
 TEST_F(InputProxyTest, IsNotLookedForAmongFewerTrianglesThanComponents) {
   InputProxyOptions options;
