@@ -88,12 +88,14 @@ class BaseWalk {
   // The smallest stream with a base of that size, and as few levels as lead to the targets.
   StatusOr<AttributedTrial> Meet(uint32_t num_base_vertices) {
     const double num_faces = static_cast<double>(input_.parts.refined.surface.triangles.size());
-    constexpr double kFewestFaces = 0.4, kMostFaces = 8;  // of the finest level, as multiples of the input's
+    // Of the finest level, as multiples of the input's; small inputs may need rounder surfaces, large ones would fill the memory for nothing.
+    constexpr double kFewestFaces = 0.4, kLeastMost = 2, kMostFaces = 8, kMany = 2e6;
+    const double most_faces = std::max(kLeastMost * num_faces, std::min(kMostFaces * num_faces, kMany));
     int levels = 1;
     double finest = 8.0 * num_base_vertices;
     for (; finest < kFewestFaces * num_faces; finest *= 4) ++levels;
     std::optional<SurfaceErrors> nearest;
-    for (; !nearest || finest <= kMostFaces * num_faces; ++levels, finest *= 4) {
+    for (; !nearest || finest <= most_faces; ++levels, finest *= 4) {
       LACERTA_ASSIGN_OR_RETURN(const AttributedCandidate candidate, AttributedCandidate::Create(input_, num_base_vertices, levels));
       const double before = nearest ? WorstRatio(*nearest, targets_) : std::numeric_limits<double>::infinity();
       nearest = candidate.errors();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -34,11 +35,14 @@ constexpr float kAbsent = -1;  // in place of an error: no attribute there
 struct SampledErrors {
   std::vector<float> errors;    // of attribute a at a * num_samples
   std::vector<uint8_t> turned;  // 1: all faces near look away
+  std::vector<double> squared_distances;  // sums over the blocks of samples
 };
 
 SampledErrors ErrorsAtSamples(const GroupSurface& from, const GroupSurface& to, double diagonal, const AttributeDistanceOptions& options) {
   const std::vector<MeshAttribute>&from_attributes = from.mesh().attributes, &to_attributes = to.mesh().attributes;
-  SampledErrors result{std::vector<float>(from_attributes.size() * options.num_samples, kAbsent), std::vector<uint8_t>(options.num_samples, 0)};
+  const uint64_t num_blocks = (options.num_samples + kBlockSize - 1) / kBlockSize;
+  SampledErrors result{std::vector<float>(from_attributes.size() * options.num_samples, kAbsent), std::vector<uint8_t>(options.num_samples, 0),
+                       std::vector<double>(num_blocks, 0.0)};
   uint32_t most_components = 0;
   for (const MeshAttribute& attribute : from_attributes) most_components = std::max(most_components, attribute.components);
   const auto measure_block = [&](uint64_t block) {
@@ -51,8 +55,10 @@ SampledErrors ErrorsAtSamples(const GroupSurface& from, const GroupSurface& to, 
       const SurfaceSampler::Point sample = sampler.Sample(i);
       const uint32_t face = from.face_of_slot(sample.slot);
       const GroupSurface::Point here{face, {static_cast<float>(1 - sample.u - sample.v), static_cast<float>(sample.u), static_cast<float>(sample.v)}, 0};
-      const bool agrees = to.PointsNear(from.mesh().GroupOf(face), sample.position, from.NormalOf(face), options.seam_distance * diagonal, &hint, &near);
-      result.turned[i] = !agrees;
+      const GroupSurface::Nearness nearness =
+          to.PointsNear(from.mesh().GroupOf(face), sample.position, from.NormalOf(face), options.seam_distance * diagonal, &hint, &near);
+      result.turned[i] = !nearness.agrees;
+      result.squared_distances[block] += static_cast<double>(nearness.squared_distance);
       for (size_t a = 0; a < from_attributes.size(); ++a) {
         if (from_attributes[a].corners[face][0] == MeshAttribute::kNoValue || near.empty()) continue;
         if (to_attributes[a].corners[near[0].face][0] == MeshAttribute::kNoValue) continue;
@@ -68,10 +74,9 @@ SampledErrors ErrorsAtSamples(const GroupSurface& from, const GroupSurface& to, 
       }
     }
   };
-  tbb::parallel_for(tbb::blocked_range<uint64_t>(0, (options.num_samples + kBlockSize - 1) / kBlockSize, 1),
-                    [&](const tbb::blocked_range<uint64_t>& range) {
-                      for (uint64_t block = range.begin(); block != range.end(); ++block) measure_block(block);
-                    });
+  tbb::parallel_for(tbb::blocked_range<uint64_t>(0, num_blocks, 1), [&](const tbb::blocked_range<uint64_t>& range) {
+    for (uint64_t block = range.begin(); block != range.end(); ++block) measure_block(block);
+  });
   return result;
 }
 
@@ -80,27 +85,32 @@ AttributeError Summarize(std::vector<float> errors) {
   errors.erase(std::remove(errors.begin(), errors.end(), kAbsent), errors.end());
   AttributeError result;
   if (errors.empty()) return result;
-  std::sort(errors.begin(), errors.end());
   const auto num_best = static_cast<size_t>(std::ceil(kBestShare * static_cast<double>(errors.size())));
-  double sum = 0;
-  for (size_t i = 0; i < errors.size(); ++i) {
-    sum += static_cast<double>(errors[i]) * static_cast<double>(errors[i]);
-    if (i + 1 == num_best) result.rms_99 = std::sqrt(sum / static_cast<double>(num_best));
-  }
-  result.rms = std::sqrt(sum / static_cast<double>(errors.size()));
-  result.max = static_cast<double>(errors.back());
+  const auto end_of_best = errors.begin() + static_cast<std::ptrdiff_t>(num_best);
+  std::nth_element(errors.begin(), end_of_best - 1, errors.end());
+  const auto add_square = [](double sum, float error) { return sum + static_cast<double>(error) * static_cast<double>(error); };
+  const double of_best = std::accumulate(errors.begin(), end_of_best, 0.0, add_square);
+  result.rms_99 = std::sqrt(of_best / static_cast<double>(num_best));
+  result.rms = std::sqrt(std::accumulate(end_of_best, errors.end(), of_best, add_square) / static_cast<double>(errors.size()));
+  result.max = static_cast<double>(*std::max_element(end_of_best - 1, errors.end()));
   result.share = static_cast<double>(errors.size()) / static_cast<double>(num_samples);
   return result;
 }
 
-std::vector<AttributeError> MeasureOneSide(const GroupSurface& from, const GroupSurface& to, double diagonal,
-                                           const AttributeDistanceOptions& options, double* turned) {
+struct OneSide {
+  std::vector<AttributeError> errors;
+  double turned = 0, distance = 0;
+};
+
+OneSide MeasureOneSide(const GroupSurface& from, const GroupSurface& to, double diagonal, const AttributeDistanceOptions& options) {
   const SampledErrors samples = ErrorsAtSamples(from, to, diagonal, options);
-  *turned = static_cast<double>(std::count(samples.turned.begin(), samples.turned.end(), 1)) / static_cast<double>(options.num_samples);
-  std::vector<AttributeError> result;
+  const auto num_samples = static_cast<double>(options.num_samples);
+  OneSide result;
+  result.turned = static_cast<double>(std::count(samples.turned.begin(), samples.turned.end(), 1)) / num_samples;
+  result.distance = std::sqrt(std::accumulate(samples.squared_distances.begin(), samples.squared_distances.end(), 0.0) / num_samples);
   for (size_t a = 0; a < from.mesh().attributes.size(); ++a) {
     const auto begin = samples.errors.begin() + static_cast<std::ptrdiff_t>(a * options.num_samples);
-    result.push_back(Summarize({begin, begin + static_cast<std::ptrdiff_t>(options.num_samples)}));
+    result.errors.push_back(Summarize({begin, begin + static_cast<std::ptrdiff_t>(options.num_samples)}));
   }
   return result;
 }
@@ -170,10 +180,9 @@ StatusOr<AttributeDistance> AttributeDistanceMeter::Measure(const AttributedMesh
   const GroupSurface other(mesh);
   LACERTA_RETURN_IF_ERROR(CheckArea(mesh, other).WithContext("measured mesh"));
   LACERTA_RETURN_IF_ERROR(CheckMatch(original_->surface, names_, other));
-  AttributeDistance result;
-  result.forward = MeasureOneSide(original_->surface, other, original_->diagonal, options, &result.forward_turned);
-  result.backward = MeasureOneSide(other, original_->surface, original_->diagonal, options, &result.backward_turned);
-  return result;
+  OneSide forward = MeasureOneSide(original_->surface, other, original_->diagonal, options);
+  OneSide backward = MeasureOneSide(other, original_->surface, original_->diagonal, options);
+  return AttributeDistance{std::move(forward.errors), std::move(backward.errors), forward.turned, backward.turned, forward.distance, backward.distance};
 }
 
 }  // namespace lacerta

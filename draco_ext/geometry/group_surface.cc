@@ -72,15 +72,15 @@ Vec3d GroupSurface::NormalOf(uint32_t face) const {
   return Normalized(AreaVector(mesh_.surface.positions, mesh_.surface.triangles[face]));
 }
 
-bool GroupSurface::PointsNear(uint32_t group, const Vec3f& p, const Vec3d& normal, double beyond, uint32_t* hint,
-                              std::vector<Point>* points) const {
+GroupSurface::Nearness GroupSurface::PointsNear(uint32_t group, const Vec3f& p, const Vec3d& normal, double beyond, uint32_t* hint,
+                                                std::vector<Point>* points) const {
   points->clear();
   const auto found = groups_.find(group);
-  if (found == groups_.end()) return false;
+  if (found == groups_.end()) return {};
   const Group& part = found->second;
   const bool hint_is_here = *hint < place_.size() && mesh_.GroupOf(*hint) == group;
   const ClosestPointResult closest = part.tree.ClosestPointNear(p, hint_is_here ? place_[*hint] : SurfacePoint::kNone);
-  if (closest.point.face == SurfacePoint::kNone) return false;
+  if (closest.point.face == SurfacePoint::kNone) return {};
   const auto add = [&](const ClosestPointResult& result) {
     points->push_back({part.faces[result.point.face], result.point.barycentric, result.squared_distance});
   };
@@ -97,9 +97,9 @@ bool GroupSurface::PointsNear(uint32_t group, const Vec3f& p, const Vec3d& norma
   }
   const auto first_other = std::stable_partition(points->begin(), points->end(),
                                                  [&](const Point& point) { return Dot(NormalOf(point.face), normal) > 0; });
-  if (first_other == points->begin()) return false;
-  points->erase(first_other, points->end());
-  return true;
+  const bool agrees = first_other != points->begin();
+  if (agrees) points->erase(first_other, points->end());
+  return {agrees, closest.squared_distance};
 }
 
 void GroupSurface::KeepOnePerSide(const MeshAttribute& attribute, std::vector<Point>* points) const {

@@ -29,10 +29,15 @@ class GroupSurface {
   bool HasArea(uint32_t group) const;
   Vec3d NormalOf(uint32_t face) const;  // unit; zero for a degenerate face
 
+  struct Nearness {
+    bool agrees = false;         // a face near looks the way that was asked for
+    float squared_distance = 0;  // of the closest point, whichever way its face looks; 0 where there is none
+  };
+
   // The points of the group's faces that are closest to p: one per face, of the faces up to `beyond` farther than the closest one, and
-  // of those only that look the way of `normal` unless none does, when the result is false. The nearest comes first; none where the
-  // group has no face. *hint is a face that may be near, and becomes the closest one.
-  bool PointsNear(uint32_t group, const Vec3f& p, const Vec3d& normal, double beyond, uint32_t* hint, std::vector<Point>* points) const;
+  // of those only that look the way of `normal` unless none does. The nearest comes first; none where the group has no face. *hint is a
+  // face that may be near, and becomes the closest one.
+  Nearness PointsNear(uint32_t group, const Vec3f& p, const Vec3d& normal, double beyond, uint32_t* hint, std::vector<Point>* points) const;
 
   // Of what PointsNear gave, leaves the first one on each side of the attribute's seams. Faces are on one side where a chain of them
   // leads from one to the other in which they share a vertex and its value.

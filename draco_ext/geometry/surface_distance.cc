@@ -25,9 +25,6 @@ namespace {
 // Queries done in a row by one thread. Sums are taken per block and then in the order of the blocks.
 constexpr uint64_t kBlockSize = 2048;
 
-// Squares of distances 100 dB below this are still in the range of float, in which the tree returns them.
-constexpr double kMinDiagonal = 1e-12;
-
 struct BlockSum {
   double sum2 = 0.0, max2 = 0.0;
 };
@@ -125,7 +122,7 @@ StatusOr<SurfaceDistanceMeter> SurfaceDistanceMeter::Create(const TriangleMesh& 
   if (!(made->surface->doubled_area() > 0.0)) {
     return InvalidData("original: all triangles are degenerate, there is no area to sample");
   }
-  if (!(made->diagonal >= kMinDiagonal)) {
+  if (!(made->diagonal >= kLeastDiagonal)) {
     return InvalidData("original: its bounding box is smaller than 1e-12 units; scale the mesh up");
   }
   return SurfaceDistanceMeter(std::move(made));

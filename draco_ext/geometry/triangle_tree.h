@@ -94,6 +94,19 @@ class TriangleTree {
     float half_size[3][kWidth];  // negative in a missing child
     uint32_t child[kWidth];      // a node, or the first slot of a leaf
     uint32_t count[kWidth];      // 0: a node, else the number of triangles in the leaf
+
+    // Of a point, relative to the origin of the tree, to all four boxes; 0 inside.
+    void SquaredDistances(const Vec3f& point, float (&d2)[kWidth]) const {
+      const float px = point.x, py = point.y, pz = point.z;
+      for (int k = 0; k < kWidth; ++k) {
+        const float x = std::fabs(center[0][k] - px) - half_size[0][k];
+        const float y = std::fabs(center[1][k] - py) - half_size[1][k];
+        const float z = std::fabs(center[2][k] - pz) - half_size[2][k];
+        // v + |v| is twice max(v, 0), without a branch.
+        const float x2 = x + std::fabs(x), y2 = y + std::fabs(y), z2 = z + std::fabs(z);
+        d2[k] = 0.25f * (x2 * x2 + y2 * y2 + z2 * z2);
+      }
+    }
   };
   struct Reference;  // a face, or some that stay together, while the tree is built
   struct Building;
@@ -106,9 +119,10 @@ class TriangleTree {
   void TestSlot(uint32_t slot, Search* search) const;
   ClosestPointResult Finish(const Search& search) const;
   void Traverse(Search* search) const;
-  // Calls visit(first slot, end slot) for the leaves below children for which is_wanted(node, child) holds, until it says false.
-  template <typename IsWanted, typename Visit>
-  void VisitLeaves(const IsWanted& is_wanted, const Visit& visit) const;
+  // Calls visit(first slot, end slot) for the leaves whose boxes are less than that far from a point, relative to the origin of the tree, until it says
+  // false.
+  template <typename Visit>
+  void VisitLeaves(const Vec3f& point, float max_squared_distance, const Visit& visit) const;
 
   std::vector<Node> nodes_;       // the first is the root; empty when there is no triangle
   std::vector<Corners> corners_;  // per slot

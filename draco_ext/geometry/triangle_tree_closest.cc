@@ -135,21 +135,13 @@ void TriangleTree::TestSlot(uint32_t slot, Search* search) const {
 void TriangleTree::Traverse(Search* search) const {
   if (nodes_.empty()) return;
   const Vec3f local = search->p - origin_;
-  const float px = local.x, py = local.y, pz = local.z;
   StackEntry stack[kStackSize];
   int size = 0;
   uint32_t current = 0;
   while (true) {
     const Node& node = nodes_[current];
     float d2[kWidth];
-    for (int k = 0; k < kWidth; ++k) {
-      const float x = std::fabs(node.center[0][k] - px) - node.half_size[0][k];
-      const float y = std::fabs(node.center[1][k] - py) - node.half_size[1][k];
-      const float z = std::fabs(node.center[2][k] - pz) - node.half_size[2][k];
-      // v + |v| is twice max(v, 0), without a branch.
-      const float x2 = x + std::fabs(x), y2 = y + std::fabs(y), z2 = z + std::fabs(z);
-      d2[k] = 0.25f * (x2 * x2 + y2 * y2 + z2 * z2);
-    }
+    node.SquaredDistances(local, d2);
     // The children in reach go on the stack, the nearest on top.
     const int bottom = size;
     for (int k = 0; k < kWidth; ++k) {
@@ -207,15 +199,17 @@ ClosestPointResult TriangleTree::ClosestPointNear(const Vec3f& p, uint32_t hint)
   return Finish(search);
 }
 
-template <typename IsWanted, typename Visit>
-void TriangleTree::VisitLeaves(const IsWanted& is_wanted, const Visit& visit) const {
+template <typename Visit>
+void TriangleTree::VisitLeaves(const Vec3f& point, float max_squared_distance, const Visit& visit) const {
   uint32_t stack[kStackSize];
   int size = 0;
   stack[size++] = 0;
   while (size > 0) {
     const Node& node = nodes_[stack[--size]];
+    float d2[kWidth];
+    node.SquaredDistances(point, d2);
     for (int k = 0; k < kWidth; ++k) {
-      if (!is_wanted(node, k)) continue;
+      if (!(d2[k] < max_squared_distance)) continue;
       if (node.count[k] == 0) {
         stack[size++] = node.child[k];
       } else if (!visit(node.child[k], node.child[k] + node.count[k])) {
@@ -233,17 +227,11 @@ void TriangleTree::PointsNear(const Vec3f& p, float max_squared_distance, size_t
   search.pd = Vec3Cast<double>(p);
   search.SetBound(max_squared_distance);
   const size_t most = points->size() + max_points;
-  const Vec3f local = p - origin_;
-  const auto is_near = [&](const Node& node, int k) {
-    float d2 = 0.0f;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float beyond = std::max(std::fabs(node.center[axis][k] - local[axis]) - node.half_size[axis][k], 0.0f);
-      d2 += beyond * beyond;
-    }
-    return d2 < search.box_bound2;
-  };
-  VisitLeaves(is_near, [&](uint32_t first_slot, uint32_t end_slot) {
+  VisitLeaves(p - origin_, search.box_bound2, [&](uint32_t first_slot, uint32_t end_slot) {
+    std::array<float, kLeafSize> bounds{};
+    if (end_slot - first_slot > 1 && first_slot + kLeafSize <= corners_.size()) LowerBounds(first_slot, p, &bounds);
     for (uint32_t slot = first_slot; slot < end_slot; ++slot) {
+      if (bounds[slot - first_slot] >= search.box_bound2) continue;
       if (points->size() == most) return false;
       const Corners& t = corners_[slot];
       if (ClosestOnTriangle(search.pd, Vec3Cast<double>(t[0]), Vec3Cast<double>(t[1]), Vec3Cast<double>(t[2]), search.bound2,
@@ -265,12 +253,7 @@ double TriangleTree::Crowding() const {
   for (size_t i = 0; i < num_points; ++i) {
     const Corners& t = corners_[i * corners_.size() / num_points];
     const Vec3f point = (t[0] - origin_) * (1 / 3.0f) + (t[1] - origin_) * (1 / 3.0f) + (t[2] - origin_) * (1 / 3.0f);
-    const auto is_inside = [&](const Node& node, int k) {
-      bool inside = true;
-      for (int axis = 0; axis < 3; ++axis) inside = inside && std::fabs(node.center[axis][k] - point[axis]) <= node.half_size[axis][k];
-      return inside;
-    };
-    VisitLeaves(is_inside, [&](uint32_t first_slot, uint32_t end_slot) {
+    VisitLeaves(point, FLT_MIN, [&](uint32_t first_slot, uint32_t end_slot) {
       faces += end_slot - first_slot;
       return true;
     });

@@ -83,11 +83,12 @@ StatusOr<std::optional<AttributedMesh>> AttributedProxy(const AttributedMesh& or
   if (options.fewest_triangles > most_triangles) return std::optional<AttributedMesh>();
   const std::vector<double> weights = WeightsOfTargets(original, meter, targets);
   ProxySearch search(meter, targets, options);
-  if (options.most_at_once <= most_triangles) {
-    AttributedMesh reduced = SimplifyInParts(original, weights, options.most_at_once, options.part_triangles);
+  for (const uint32_t at_once : SizesInParts(options.first_at_once, options.most_at_once, all)) {
+    AttributedMesh reduced = SimplifyInParts(original, weights, at_once, options.part_triangles);
     const size_t size = reduced.surface.triangles.size();
     StatusOr<std::optional<AttributedMesh>> proxy = search.FirstNearEnough(AttributedSimplification(reduced, weights), std::min(size, most_triangles));
     if (!proxy.ok() || proxy.value().has_value()) return proxy;
+    if (at_once < options.most_at_once) continue;
     const StatusOr<SurfaceErrors> errors = meter.Measure(reduced, kSamples);
     if (size <= most_triangles && errors.ok() && WillDo(errors.value(), targets)) return std::optional<AttributedMesh>(std::move(reduced));
     return Unsupported("it needs more than " + std::to_string(size) + " triangles for the errors asked for");

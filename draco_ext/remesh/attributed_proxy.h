@@ -14,9 +14,9 @@ namespace lacerta {
 
 struct AttributedProxyOptions {
   uint32_t fewest_triangles = 100'000;
-  // Inputs of at least twice that are simplified to so many part by part first (simplify_in_parts.h), which keeps memory per triangle low, and
-  // never as a whole.
-  uint32_t most_at_once = 1'000'000;
+  // Inputs of at least twice that are simplified to so many part by part first (simplify_in_parts.h), which keeps memory per triangle low and all
+  // threads busy; then, where that is not near enough, to `most_at_once`, and as a whole only where that is more than half of them.
+  uint32_t first_at_once = 250'000, most_at_once = 1'000'000;
   uint32_t part_triangles = 125'000;
   // What more triangles would take away from an error, over what is left of the error allowed beside the noise that simplification smooths
   // away (error_floor.h), at most:

@@ -8,6 +8,13 @@
 #include "geometry/vertex_area_vectors.h"
 
 namespace lacerta {
+namespace {
+
+bool HasSeveralGroups(const AttributedMesh& mesh) {
+  return std::any_of(mesh.groups.begin(), mesh.groups.end(), [&](uint32_t group) { return group != mesh.groups.front(); });
+}
+
+}  // namespace
 
 double RangeOf(const MeshAttribute& attribute) {
   double range = 0;
@@ -70,13 +77,19 @@ double WorstRatio(const SurfaceErrors& errors, const ErrorTargets& targets) {
 }
 
 StatusOr<SurfaceErrorMeter> SurfaceErrorMeter::Create(const AttributedMesh& original, double texture_size) {
-  LACERTA_ASSIGN_OR_RETURN(SurfaceDistanceMeter distance, SurfaceDistanceMeter::Create(original.surface));
+  const double diagonal = BoundingBoxDiagonal(original.surface);
+  if (!(diagonal >= kLeastDiagonal)) return InvalidData("original: its bounding box is smaller than 1e-12 units; scale the mesh up");
+  std::optional<SurfaceDistanceMeter> distance;
+  if (HasSeveralGroups(original)) {
+    LACERTA_ASSIGN_OR_RETURN(distance, SurfaceDistanceMeter::Create(original.surface));
+  }
   LACERTA_ASSIGN_OR_RETURN(AttributeDistanceMeter attributes, AttributeDistanceMeter::Create(original));
   constexpr uint64_t kFewest = 10'000, kPerTriangle = 16;  // small parts have no more to tell
   const uint64_t most_samples = std::max(kFewest, kPerTriangle * original.surface.triangles.size());
   const std::vector<double> shares = AttributeShares(original);
   const double least_share = shares.empty() ? 1.0 : *std::min_element(shares.begin(), shares.end());
-  return SurfaceErrorMeter(std::move(distance), std::move(attributes), texture_size, most_samples, ShareAgainstNormals(original), least_share);
+  return SurfaceErrorMeter(std::move(distance), std::move(attributes), diagonal, texture_size, most_samples,
+                           ShareAgainstNormals(original), least_share);
 }
 
 SurfaceErrorMeter SurfaceErrorMeter::WithNames(std::vector<std::string> names) const {
@@ -89,12 +102,16 @@ StatusOr<SurfaceErrors> SurfaceErrorMeter::Measure(const AttributedMesh& mesh, u
   // What only a part of the surface has must not be told by a handful of samples.
   constexpr double kFewest = 3000, kMost = 50'000;
   num_samples = std::min(std::max(num_samples, static_cast<uint64_t>(std::min(kFewest / least_share_, kMost))), most_samples_);
-  LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, distance_.Measure(mesh.surface, SurfaceDistanceOptions::RmsOnly(num_samples)));
   AttributeDistanceOptions options;
   options.num_samples = num_samples;
   options.texture_size = texture_size_;
   LACERTA_ASSIGN_OR_RETURN(const AttributeDistance attributes, attributes_.Measure(mesh, options));
-  SurfaceErrors errors{distance.Rms(), {}, attributes.backward_turned, std::max(ShareAgainstNormals(mesh) - against_normals_, 0.0)};
+  double distance = std::max(attributes.forward_distance, attributes.backward_distance);
+  if (distance_) {
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance across_groups, distance_->Measure(mesh.surface, SurfaceDistanceOptions::RmsOnly(num_samples)));
+    distance = across_groups.Rms();
+  }
+  SurfaceErrors errors{distance, {}, attributes.backward_turned, std::max(ShareAgainstNormals(mesh) - against_normals_, 0.0)};
   for (size_t a = 0; a < attributes.forward.size(); ++a) errors.attributes.push_back(attributes.Worst(a));
   return errors;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,17 +64,18 @@ class SurfaceErrorMeter {
   // num_samples: on each of the two surfaces, fewer where the original is small, more where a small part of it has an attribute.
   StatusOr<SurfaceErrors> Measure(const AttributedMesh& mesh, uint64_t num_samples) const;
 
-  double diagonal() const { return distance_.diagonal(); }
+  double diagonal() const { return diagonal_; }
   double texture_size() const { return texture_size_; }
 
  private:
-  SurfaceErrorMeter(SurfaceDistanceMeter distance, AttributeDistanceMeter attributes, double texture_size, uint64_t most_samples,
-                    double against_normals, double least_share)
-      : distance_(std::move(distance)), attributes_(std::move(attributes)), texture_size_(texture_size), most_samples_(most_samples),
-        against_normals_(against_normals), least_share_(least_share) {}
+  SurfaceErrorMeter(std::optional<SurfaceDistanceMeter> distance, AttributeDistanceMeter attributes, double diagonal, double texture_size,
+                    uint64_t most_samples, double against_normals, double least_share)
+      : distance_(std::move(distance)), attributes_(std::move(attributes)), diagonal_(diagonal), texture_size_(texture_size),
+        most_samples_(most_samples), against_normals_(against_normals), least_share_(least_share) {}
 
-  SurfaceDistanceMeter distance_;
+  std::optional<SurfaceDistanceMeter> distance_;  // where there are several groups: of one the attributes' meter tells it on the way
   AttributeDistanceMeter attributes_;
+  double diagonal_;
   double texture_size_;
   uint64_t most_samples_;
   double against_normals_;  // ShareAgainstNormals of the original

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "geometry/for_each_branch.h"
 #include "lacerta/surface_distance.h"
 #include "pack/family_plan.h"
 #include "pack/scene_budget.h"
@@ -35,13 +37,41 @@ std::vector<PrimitivePlan> InOrder(const PackedScene& scene, std::vector<std::ve
   return plans;
 }
 
+uint64_t NumVertices(const PackedScene& scene, size_t family) {
+  uint64_t count = 0;
+  for (const size_t member : scene.families.families[family].members) count += scene.sources[member].primitive->num_vertices;
+  return count;
+}
+
+// Calls work(family) -> Status for families in turn, several at a time as far as they are small together: memory goes with their vertices. One at a time
+// where somebody follows the progress, which is that of one. Returns the first failure in their order.
+template <typename Work>
+Status ForEachFamily(const PackedScene& scene, const PackOptions& options, const std::vector<size_t>& families, const Work& work) {
+  constexpr uint64_t kMostTogether = 250'000;
+  for (size_t first = 0, end = 0; first < families.size(); first = end) {
+    uint64_t together = 0;
+    do together += NumVertices(scene, families[end++]);
+    while (end < families.size() && !options.encode.progress && together + NumVertices(scene, families[end]) <= kMostTogether);
+    std::vector<Status> done(end - first);
+    ForEachBranch(done.size(), [&](size_t i) { done[i] = work(families[first + i]); });
+    for (Status& status : done) LACERTA_RETURN_IF_ERROR(std::move(status));
+  }
+  return Status();
+}
+
+std::vector<size_t> AllFamilies(const PackedScene& scene) {
+  std::vector<size_t> all(scene.families.families.size());
+  std::iota(all.begin(), all.end(), size_t{0});
+  return all;
+}
+
 StatusOr<std::vector<PrimitivePlan>> PlanAlike(const PackedScene& scene, PackOptions options) {
   options.attributes.turned = TurnedAt(options.attributes.turned, TargetPsnr(options.encode.target));
-  std::vector<std::vector<PrimitivePlan>> families;
-  for (size_t f = 0; f < scene.families.families.size(); ++f) {
-    LACERTA_ASSIGN_OR_RETURN(std::vector<PrimitivePlan> plans, PlanFamily({&scene, &options, f}));
-    families.push_back(std::move(plans));
-  }
+  std::vector<std::vector<PrimitivePlan>> families(scene.families.families.size());
+  LACERTA_RETURN_IF_ERROR(ForEachFamily(scene, options, AllFamilies(scene), [&](size_t f) -> Status {
+    LACERTA_ASSIGN_OR_RETURN(families[f], PlanFamily({&scene, &options, f}));
+    return Status();
+  }));
   return InOrder(scene, std::move(families));
 }
 
@@ -152,10 +182,8 @@ StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const PackedScene& scene, cons
     if (scene.family_of[i] == PackedScene::kNone) budget -= static_cast<double>(UntouchedPlan(scene, i).report.bytes_after);
   }
   std::vector<TriedFamily> families;
-  for (size_t f = 0; f < scene.families.families.size(); ++f) {
-    families.emplace_back(scene, options, f);
-    LACERTA_RETURN_IF_ERROR(families.back().Try(kFirstStep));
-  }
+  for (const size_t f : AllFamilies(scene)) families.emplace_back(scene, options, f);
+  LACERTA_RETURN_IF_ERROR(ForEachFamily(scene, options, AllFamilies(scene), [&](size_t f) { return families[f].Try(kFirstStep); }));
   const double worthwhile = kWorthwhile * budget;
   std::vector<size_t> chosen = ChooseKnown(CurvesOf(families), budget);
   for (int round = 0; round < kMostRounds; ++round) {
@@ -168,14 +196,15 @@ StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const PackedScene& scene, cons
       expected_error += ExpectedError(curves[f], shares[f]);
     }
     if (known_bytes <= budget && known_bytes >= kGoodEnough * budget && expected_error >= kGoodEnough * known_error) break;
-    bool has_tried = false;
+    std::vector<size_t> tried, steps(families.size());
     for (size_t f = 0; f < families.size(); ++f) {
       const std::optional<size_t> next = families[f].NextTrial(shares[f], worthwhile);
       if (!next.has_value()) continue;
-      LACERTA_RETURN_IF_ERROR(families[f].Try(*next));
-      has_tried = true;
+      tried.push_back(f);
+      steps[f] = *next;
     }
-    if (!has_tried) break;
+    if (tried.empty()) break;
+    LACERTA_RETURN_IF_ERROR(ForEachFamily(scene, options, tried, [&](size_t f) { return families[f].Try(steps[f]); }));
     chosen = ChooseKnown(CurvesOf(families), budget);
   }
   std::vector<std::vector<PrimitivePlan>> plans;

@@ -39,6 +39,8 @@ struct AttributeDistance {
   std::vector<AttributeError> forward, backward;
   // Share of the area of the original, and of the other surface, near which all faces of the other one look away.
   double forward_turned = 0, backward_turned = 0;
+  // RMS of the distance to the closest point of the same group, model units. Where there is one group, that of SurfaceDistanceMeter by as many samples.
+  double forward_distance = 0, backward_distance = 0;
 
   AttributeError Worst(size_t attribute) const;  // of the two directions, figure by figure
 };

@@ -96,6 +96,24 @@ TEST_F(AttributedProxyTest, IsMadeOfPartsWhereThereAreTooManyForOneRun) {
   EXPECT_NE(fine.status().message().find("it needs more than "), std::string::npos) << fine.status().message();
 }
 
+// Of a small reduction first, of a larger one where that is not near enough, and of the whole where that may not be reduced so far.
+TEST_F(AttributedProxyTest, IsMadeOfTheFirstReductionThatIsNearEnough) {
+  AttributedProxyOptions options;
+  options.fewest_triangles = 500;
+  options.most_at_once = 20'000;
+  options.part_triangles = 5000;
+  AttributedProxyOptions in_parts = options;
+  in_parts.first_at_once = 2000;
+  for (const double texels : {2.0, 0.1}) {
+    const ErrorTargets targets{kAny, {texels, kAny}};
+    const std::optional<AttributedMesh> proxy = ProxyFor(targets, in_parts), of_whole = ProxyFor(targets, options);
+    ASSERT_TRUE(proxy.has_value() && of_whole.has_value()) << texels;
+    EXPECT_LE(meter_.Measure(*proxy, 100'000).value().attributes[0].rms_99, 1.5 * options.attribute_share * texels);
+    EXPECT_EQ(proxy->surface.positions != of_whole->surface.positions, proxy->surface.triangles.size() <= 2000) << texels;
+    EXPECT_EQ(proxy->surface.triangles.size() <= 2000, texels > 1);
+  }
+}
+
 TEST(AttributedProxy, IsNotThereWhereSeamsLeaveMoreThanHalf) {
   const AttributedMesh mesh = WeldSoups({shapes::Unwelded(shapes::TexturedGrid(20, 20), 0.2f)}).value();  // every edge is a seam
   const SurfaceErrorMeter meter = SurfaceErrorMeter::Create(mesh).value();

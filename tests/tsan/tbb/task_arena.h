@@ -24,6 +24,10 @@ class task_arena {
 
 namespace this_task_arena {
 inline int max_concurrency() { return lacerta_tsan::most_threads; }
+template <typename Call>
+auto isolate(const Call& call) -> decltype(call()) {
+  return call();
+}
 }  // namespace this_task_arena
 
 }  // namespace tbb
