@@ -83,7 +83,8 @@ StatusOr<std::optional<AttributedMesh>> AttributedProxy(const AttributedMesh& or
   if (options.fewest_triangles > most_triangles) return std::optional<AttributedMesh>();
   const std::vector<double> weights = WeightsOfTargets(original, meter, targets);
   ProxySearch search(meter, targets, options);
-  for (const uint32_t at_once : SizesInParts(options.first_at_once, options.most_at_once, all)) {
+  for (const uint32_t at_once : {options.first_at_once, options.most_at_once}) {
+    if (at_once > options.most_at_once || at_once > most_triangles) continue;
     AttributedMesh reduced = SimplifyInParts(original, weights, at_once, options.part_triangles);
     const size_t size = reduced.surface.triangles.size();
     StatusOr<std::optional<AttributedMesh>> proxy = search.FirstNearEnough(AttributedSimplification(reduced, weights), std::min(size, most_triangles));

@@ -227,12 +227,4 @@ AttributedMesh SimplifyInParts(const AttributedMesh& input, const std::vector<do
   return result;
 }
 
-std::vector<uint32_t> SizesInParts(uint32_t first, uint32_t most, size_t num_triangles) {
-  std::vector<uint32_t> sizes;
-  for (const uint32_t size : {first, most}) {
-    if (size <= most && size <= num_triangles / 2 && (sizes.empty() || size != sizes.back())) sizes.push_back(size);
-  }
-  return sizes;
-}
-
 }  // namespace lacerta

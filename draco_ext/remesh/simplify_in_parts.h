@@ -2,7 +2,6 @@
 #ifndef LACERTA_REMESH_SIMPLIFY_IN_PARTS_H_
 #define LACERTA_REMESH_SIMPLIFY_IN_PARTS_H_
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -22,10 +21,6 @@ TriangleMesh SimplifyInParts(const TriangleMesh& mesh, uint32_t num_triangles, u
 //   input    one that CheckAttributedMesh accepts
 //   weights  as for AttributedSimplification
 AttributedMesh SimplifyInParts(const AttributedMesh& input, const std::vector<double>& weights, uint32_t num_triangles, uint32_t part_triangles = 125'000);
-
-// Whoever looks for the fewest triangles that do tries a small size first, since most surfaces need no more, then a large one: those of `first`
-// and `most` that leave at most half of the triangles, in this order.
-std::vector<uint32_t> SizesInParts(uint32_t first, uint32_t most, size_t num_triangles);
 
 }  // namespace lacerta
 

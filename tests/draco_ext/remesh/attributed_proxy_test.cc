@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "shapes/attributed_shapes.h"
@@ -111,6 +112,24 @@ TEST_F(AttributedProxyTest, IsMadeOfTheFirstReductionThatIsNearEnough) {
     EXPECT_LE(meter_.Measure(*proxy, 100'000).value().attributes[0].rms_99, 1.5 * options.attribute_share * texels);
     EXPECT_EQ(proxy->surface.positions != of_whole->surface.positions, proxy->surface.triangles.size() <= 2000) << texels;
     EXPECT_EQ(proxy->surface.triangles.size() <= 2000, texels > 1);
+  }
+}
+
+TEST_F(AttributedProxyTest, IsReducedInPartsWhereThatHalvesIt) {
+  AttributedProxyOptions options;
+  options.fewest_triangles = 500;
+  options.part_triangles = 5000;
+  const ErrorTargets targets{kAny, {2.0, kAny}};
+  const std::vector<Vec3f> of_whole = ProxyFor(targets, options)->surface.positions;
+  const auto half = static_cast<uint32_t>(mesh_.surface.triangles.size() / 2);
+  // As the first size, as the last, as both, and as a first one that is larger than the last.
+  for (const auto& [first, most, in_parts] : std::vector<std::tuple<uint32_t, uint32_t, bool>>{
+           {half, 4 * half, true}, {half + 1, 4 * half, false}, {4 * half, half, true}, {4 * half, half + 1, false}, {half, half, true}}) {
+    options.first_at_once = first;
+    options.most_at_once = most;
+    const std::optional<AttributedMesh> proxy = ProxyFor(targets, options);
+    ASSERT_TRUE(proxy.has_value());
+    EXPECT_EQ(proxy->surface.positions != of_whole, in_parts) << first << " " << most;
   }
 }
 

@@ -109,14 +109,5 @@ TEST_F(SimplifyShapeInPartsTest, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_TRUE(one.positions == many.positions);
 }
 
-TEST(SizesInParts, AreThoseThatHalveTheSurface) {
-  using Sizes = std::vector<uint32_t>;
-  EXPECT_EQ(SizesInParts(10, 100, 19), Sizes());
-  EXPECT_EQ(SizesInParts(10, 100, 20), Sizes({10}));
-  EXPECT_EQ(SizesInParts(10, 100, 200), Sizes({10, 100}));
-  EXPECT_EQ(SizesInParts(100, 100, 200), Sizes({100}));
-  EXPECT_EQ(SizesInParts(100, 10, 200), Sizes({10}));
-}
-
 }  // namespace
 }  // namespace lacerta
