@@ -114,6 +114,8 @@ class TriangleTree {
 
   uint32_t BuildNode(const Building& building, Reference* first, Reference* last, int depth, std::vector<Node>* nodes) const;
   Node GroupNode(const TriangleMesh& mesh, uint32_t first_face, uint32_t first_slot) const;
+  // Whether LowerBounds, which reads four triangles in a row, is to be asked of a leaf: an exact look at one alone takes no longer.
+  bool AreWorthBounds(uint32_t first, uint32_t count) const { return count > 1 && first + kLeafSize <= corners_.size(); }
   void LowerBounds(uint32_t first, const Vec3f& point, std::array<float, kLeafSize>* bounds) const;
   void TestLeaf(uint32_t first, uint32_t count, Search* search) const;  // count: at most kLeafSize
   void TestSlot(uint32_t slot, Search* search) const;

@@ -97,7 +97,7 @@ void TriangleTree::LowerBounds(uint32_t first, const Vec3f& point, std::array<fl
 }
 
 void TriangleTree::TestLeaf(uint32_t first, uint32_t count, Search* search) const {
-  if (count == 1 || first + kLeafSize > corners_.size()) {
+  if (!AreWorthBounds(first, count)) {
     for (uint32_t slot = first; slot < first + count; ++slot) TestSlot(slot, search);
     return;
   }
@@ -229,7 +229,7 @@ void TriangleTree::PointsNear(const Vec3f& p, float max_squared_distance, size_t
   const size_t most = points->size() + max_points;
   VisitLeaves(p - origin_, search.box_bound2, [&](uint32_t first_slot, uint32_t end_slot) {
     std::array<float, kLeafSize> bounds{};
-    if (end_slot - first_slot > 1 && first_slot + kLeafSize <= corners_.size()) LowerBounds(first_slot, p, &bounds);
+    if (AreWorthBounds(first_slot, end_slot - first_slot)) LowerBounds(first_slot, p, &bounds);
     for (uint32_t slot = first_slot; slot < end_slot; ++slot) {
       if (bounds[slot - first_slot] >= search.box_bound2) continue;
       if (points->size() == most) return false;
