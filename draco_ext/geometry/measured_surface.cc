@@ -110,6 +110,13 @@ class LeanSurface : public MeasuredSurface {
 
 }  // namespace
 
+Status CheckDiagonal(double diagonal) {
+  // Squares of distances 100 dB below this are still in the range of float, in which the tree returns them.
+  constexpr double kLeast = 1e-12;
+  if (diagonal >= kLeast) return Status();
+  return InvalidData("its bounding box is smaller than 1e-12 units; scale the mesh up");
+}
+
 std::unique_ptr<MeasuredSurface> MakeMeasuredSurface(const TriangleMesh& mesh, bool with_vertices) {
   return std::make_unique<TreeSurface>(mesh, with_vertices);
 }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "lacerta/mesh.h"
+#include "lacerta/status.h"
 
 namespace lacerta {
 
@@ -28,6 +29,9 @@ class MeasuredSurface {
   virtual Points Vertices() const = 0;
   virtual uint64_t num_vertices() const = 0;
 };
+
+// Fails with kInvalidData where the bounding box of a surface has a diagonal, model units, too small for what is measured against it.
+Status CheckDiagonal(double diagonal);
 
 // mesh: indices in range, used coordinates finite and within TriangleTree::kMaxCoordinate.
 

@@ -122,9 +122,7 @@ StatusOr<SurfaceDistanceMeter> SurfaceDistanceMeter::Create(const TriangleMesh& 
   if (!(made->surface->doubled_area() > 0.0)) {
     return InvalidData("original: all triangles are degenerate, there is no area to sample");
   }
-  if (!(made->diagonal >= kLeastDiagonal)) {
-    return InvalidData("original: its bounding box is smaller than 1e-12 units; scale the mesh up");
-  }
+  LACERTA_RETURN_IF_ERROR(CheckDiagonal(made->diagonal).WithContext("original"));
   return SurfaceDistanceMeter(std::move(made));
 }
 

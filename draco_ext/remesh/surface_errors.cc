@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/facing.h"
+#include "geometry/measured_surface.h"
 #include "geometry/vertex_area_vectors.h"
 
 namespace lacerta {
@@ -78,7 +79,7 @@ double WorstRatio(const SurfaceErrors& errors, const ErrorTargets& targets) {
 
 StatusOr<SurfaceErrorMeter> SurfaceErrorMeter::Create(const AttributedMesh& original, double texture_size) {
   const double diagonal = BoundingBoxDiagonal(original.surface);
-  if (!(diagonal >= kLeastDiagonal)) return InvalidData("original: its bounding box is smaller than 1e-12 units; scale the mesh up");
+  LACERTA_RETURN_IF_ERROR(CheckDiagonal(diagonal).WithContext("original"));
   std::optional<SurfaceDistanceMeter> distance;
   if (HasSeveralGroups(original)) {
     LACERTA_ASSIGN_OR_RETURN(distance, SurfaceDistanceMeter::Create(original.surface));

@@ -51,9 +51,6 @@ double BoundingBoxDiagonal(const TriangleMesh& mesh);
 // No two meshes of floats are measured to be closer than this many dB.
 inline constexpr double kMaxPsnr = 200.0;
 
-// Surfaces whose bounding box has a shorter diagonal, model units, are not measured: the squares of their distances leave the range of float.
-inline constexpr double kLeastDiagonal = 1e-12;
-
 // Peak signal-to-noise ratio in dB: 20 log10(diagonal / distance), at most kMaxPsnr, which also stands for distance
 // zero. Both in the same unit and >= 0; where the diagonal is zero and the distance is not, minus infinity; NaN where
 // either is NaN.
