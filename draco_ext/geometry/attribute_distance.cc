@@ -85,14 +85,15 @@ AttributeError Summarize(std::vector<float> errors) {
   errors.erase(std::remove(errors.begin(), errors.end(), kAbsent), errors.end());
   AttributeError result;
   if (errors.empty()) return result;
+  std::sort(errors.begin(), errors.end());  // all of them: sums in an order that any standard library gives
   const auto num_best = static_cast<size_t>(std::ceil(kBestShare * static_cast<double>(errors.size())));
-  const auto end_of_best = errors.begin() + static_cast<std::ptrdiff_t>(num_best);
-  std::nth_element(errors.begin(), end_of_best - 1, errors.end());
-  const auto add_square = [](double sum, float error) { return sum + static_cast<double>(error) * static_cast<double>(error); };
-  const double of_best = std::accumulate(errors.begin(), end_of_best, 0.0, add_square);
-  result.rms_99 = std::sqrt(of_best / static_cast<double>(num_best));
-  result.rms = std::sqrt(std::accumulate(end_of_best, errors.end(), of_best, add_square) / static_cast<double>(errors.size()));
-  result.max = static_cast<double>(*std::max_element(end_of_best - 1, errors.end()));
+  double sum = 0;
+  for (size_t i = 0; i < errors.size(); ++i) {
+    sum += static_cast<double>(errors[i]) * static_cast<double>(errors[i]);
+    if (i + 1 == num_best) result.rms_99 = std::sqrt(sum / static_cast<double>(num_best));
+  }
+  result.rms = std::sqrt(sum / static_cast<double>(errors.size()));
+  result.max = static_cast<double>(errors.back());
   result.share = static_cast<double>(errors.size()) / static_cast<double>(num_samples);
   return result;
 }
