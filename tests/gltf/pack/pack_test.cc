@@ -187,6 +187,21 @@ double ScenePsnr(const Bytes& asset, const Bytes& packed) {
   return Psnr(meter.Measure(FlattenGltf(packed, {}).value().mesh).value().Rms(), meter.diagonal());
 }
 
+// Whoever follows the progress gets one family at a time, and the bytes that several at a time give.
+TEST(Pack, FamiliesInTurnAndTogetherAreTheSame) {
+  const Bytes asset = TwoColoredBalls(24, 10);
+  for (const EncodeTarget& target : {EncodeTarget{EncodeTarget::Kind::kPsnr, 60}, EncodeTarget{EncodeTarget::Kind::kBytes, 2500}}) {
+    PackOptions options;
+    options.encode.target = target;
+    const auto together = PackGltf(asset, options);
+    options.encode.progress = [](double, const char*) {};
+    const auto in_turn = PackGltf(asset, options);
+    ASSERT_TRUE(together.ok() && in_turn.ok());
+    EXPECT_EQ(together.value().report.primitives.size(), 2u);
+    EXPECT_TRUE(together.value().glb == in_turn.value().glb);
+  }
+}
+
 TEST(Pack, ABudgetGoesWhereItLowersTheErrorOfTheSceneMost) {
   // One surface is smooth, the other rough all over: a byte does more for the first.
   AssetBuilder builder;
