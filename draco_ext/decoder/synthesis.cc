@@ -1,7 +1,7 @@
 #include "decoder/synthesis.h"
 
 #include <cstdint>
-#include <utility>
+#include <vector>
 
 #include "common/curved_prediction.h"
 #include "common/local_frame.h"
@@ -9,17 +9,27 @@
 namespace lacerta {
 namespace {
 
-using EdgeOffset = std::pair<uint32_t, Vec3f>;
-
-// Details of the edges that have any; their frames depend on the butterfly's midpoints around. frame_normals: of all edges, or empty where they are
-// not at hand.
-std::vector<EdgeOffset> Details(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, Span<const Vec3f> positions,
-                                Span<const Vec3f> midpoints, Span<const Vec3f> frame_normals) {
-  std::vector<EdgeOffset> details;
+// Edges that have a detail.
+std::vector<uint32_t> DetailedEdges(const Topology& coarse, const QuantizedLevel& quantized) {
+  std::vector<uint32_t> edges;
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
-    if (!HasDetail(quantized, e) || coarse.is_copy(e)) continue;  // most of a fine level: no frame needed
+    if (HasDetail(quantized, e) && !coarse.is_copy(e)) edges.push_back(e);
+  }
+  return edges;
+}
+
+// Whether the normals of all edges, face by face, are made sooner than those of so many of them. Most fine levels have few.
+bool AreMany(size_t num_detailed, uint32_t num_edges) { return num_detailed > num_edges / 5; }
+
+// Details of those edges in model coordinates; their frames depend on the butterfly's midpoints around. frame_normals: of all edges, or empty where
+// they are not at hand.
+std::vector<Vec3f> Details(const Topology& coarse, const LevelSteps& steps, const QuantizedLevel& quantized, const std::vector<uint32_t>& edges,
+                           Span<const Vec3f> positions, Span<const Vec3f> midpoints, Span<const Vec3f> frame_normals) {
+  std::vector<Vec3f> details(edges.size());
+  for (size_t i = 0; i < edges.size(); ++i) {
+    const uint32_t e = edges[i];
     const LocalFrame frame = frame_normals.empty() ? LocalFrameAt(coarse, positions, midpoints, e) : FrameWithNormal(coarse, positions, e, frame_normals[e]);
-    details.emplace_back(e, frame.ToWorld(LocalDetail(steps, quantized, e)));
+    details[i] = frame.ToWorld(LocalDetail(steps, quantized, e));
   }
   return details;
 }
@@ -30,15 +40,16 @@ void AddDetails(const Topology& coarse, const LevelSteps& steps, const Quantized
   if (steps.is_silent() && !steps.is_curved) return;
   Vec3f* const midpoints = positions->data() + coarse.num_vertices;
   const Span<const Vec3f> predicted(midpoints, coarse.num_edges());
+  std::vector<uint32_t> detailed;
+  if (!steps.is_silent()) detailed = DetailedEdges(coarse, quantized);
   std::vector<Vec3f> frame_normals;
-  if (steps.is_curved) frame_normals = FrameNormals(coarse, *positions, predicted);
-  std::vector<EdgeOffset> details;
-  if (!steps.is_silent()) details = Details(coarse, steps, quantized, *positions, predicted, frame_normals);
+  if (steps.is_curved || AreMany(detailed.size(), coarse.num_edges())) frame_normals = FrameNormals(coarse, *positions, predicted);
+  const std::vector<Vec3f> details = Details(coarse, steps, quantized, detailed, *positions, predicted, frame_normals);
   if (steps.is_curved) {
     const std::vector<Vec3f> offsets = CurveOffsets(coarse, *positions, predicted, frame_normals);
     for (uint32_t e = 0; e < coarse.num_edges(); ++e) midpoints[e] += offsets[e];
   }
-  for (const auto& [e, detail] : details) midpoints[e] += detail;
+  for (size_t i = 0; i < detailed.size(); ++i) midpoints[detailed[i]] += details[i];
   for (uint32_t e = 0; e < coarse.num_edges() && !coarse.master.empty(); ++e) {
     if (coarse.is_copy(e)) midpoints[e] = midpoints[coarse.master[e]];
   }
