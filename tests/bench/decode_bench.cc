@@ -8,7 +8,7 @@
 // over the bytes of positions and triangles. acmr: vertices that a GPU transforms per triangle, drawing the result
 // through a cache of the 16 last ones. Memory that was given back stays with the process: malloc would return large
 // blocks to the system, and taking them anew, page by page, costs more than a whole decoding does. "whole_anew" and
-// "draco_anew" take every byte anew, as a first decoding does.
+// "draco_anew" map every block of more than 128 kB anew, as a first decoding does.
 #include <benchmark/benchmark.h>
 #include <draco/compression/decode.h>
 #include <draco/compression/encode.h>
