@@ -1,7 +1,6 @@
 #include "common/attribute_prediction.h"
 
 #include "common/coefficient_sets.h"
-#include "common/large_array.h"
 #include "common/local_frame.h"
 
 namespace lacerta {
@@ -41,7 +40,7 @@ Vec3f AreaAround(const AttributeWedges& wedges, const SurfaceLevel& surface, uin
 void PredictAttribute(const AttributeHeader& header, const AttributeWedges& wedges, const SurfaceLevel& surface, std::vector<float>* values) {
   const Topology& t = wedges.topology;
   const uint32_t n = header.precision.components;
-  GrowLarge(values, (size_t{t.num_vertices} + t.num_edges()) * n);
+  values->resize((size_t{t.num_vertices} + t.num_edges()) * n);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
     float* const row = values->data() + (size_t{t.num_vertices} + e) * n;
     const float* const first = values->data() + size_t{t.edges[e][0]} * n;

@@ -1,7 +1,6 @@
 #include "common/butterfly.h"
 
 #include "common/fast_point.h"
-#include "common/large_array.h"
 
 namespace lacerta {
 
@@ -48,7 +47,7 @@ namespace {
 
 // Of every vertex, whether an edge between two such vertices needs no case of its own: no curve, and no extraordinary vertex. #V.
 std::vector<uint8_t> PlainVertices(const Topology& t) {
-  std::vector<uint8_t> is_plain = LargeArray<uint8_t>(t.num_vertices);
+  std::vector<uint8_t> is_plain(t.num_vertices);
   for (uint32_t v = 0; v < t.num_vertices; ++v) is_plain[v] = t.role[v] == CurveRole::kSmooth && !IsExtraordinary(t, v);
   return is_plain;
 }
@@ -92,12 +91,12 @@ void Predict(const Topology& t, const StencilTable& table, const Vec3f* position
 }  // namespace
 
 void PredictMidpoints(const Topology& t, const StencilTable& table, std::vector<Vec3f>* positions) {
-  GrowLarge(positions, size_t{t.num_vertices} + t.num_edges());
+  positions->resize(size_t{t.num_vertices} + t.num_edges());
   Predict<FastPoint>(t, table, positions->data(), positions->data() + t.num_vertices);
 }
 
 std::vector<Vec3f> PredictMidpoints(const Topology& topology, const StencilTable& table, const std::vector<Vec3f>& positions) {
-  std::vector<Vec3f> midpoints = LargeArray<Vec3f>(topology.num_edges());
+  std::vector<Vec3f> midpoints(topology.num_edges());
   Predict<Vec3f>(topology, table, positions.data(), midpoints.data());
   return midpoints;
 }

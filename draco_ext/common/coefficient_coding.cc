@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "common/large_array.h"
-
 namespace lacerta {
 namespace {
 
@@ -50,7 +48,7 @@ CoefficientContext CodedNeighbors::ContextAmongNonzero(uint32_t edge, const Fore
 
 std::vector<Forecast> CodedNeighbors::ForecastFiner() const {
   const Topology& t = topology_;
-  std::vector<Forecast> parents = LargeArray<Forecast>(t.num_edges());
+  std::vector<Forecast> parents(t.num_edges());
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
     // The mean of the edge (weight 4) and the other edges of its faces (weight 1), halved: details shrink with the
     // level.

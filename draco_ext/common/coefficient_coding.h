@@ -14,7 +14,6 @@
 
 #include "common/coefficient_models.h"
 #include "common/coefficient_sets.h"
-#include "common/large_array.h"
 #include "common/subdivision.h"
 
 namespace lacerta {
@@ -37,7 +36,7 @@ struct CodingState {
 // What edges hand on to those of the next finer level (2 #E + 3 #F): to their halves, and to the inner edges parallel to them.
 template <typename T>
 std::vector<T> HandDown(const Topology& t, const std::vector<T>& parents) {
-  std::vector<T> finer = LargeArray<T>(2 * parents.size() + size_t{3} * t.num_faces());
+  std::vector<T> finer(2 * parents.size() + size_t{3} * t.num_faces());
   auto next = finer.begin();
   for (const T& parent : parents) {
     *next++ = parent;
@@ -55,7 +54,7 @@ std::vector<T> HandDown(const Topology& t, const std::vector<T>& parents) {
 class CodedNeighbors {
  public:
   explicit CodedNeighbors(const Topology& t)
-      : topology_(t), has_copies_(!t.master.empty()), values_(LargeArray<int32_t>(t.num_edges())), around_(LargeArray<Around>(t.num_vertices)) {}
+      : topology_(t), has_copies_(!t.master.empty()), values_(t.num_edges()), around_(t.num_vertices) {}
 
   // Adds a coefficient; magnitudes over 4,096 count as 4,096.
   void Add(uint32_t edge, int32_t value) {

@@ -3,12 +3,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "common/large_array.h"
-
 namespace lacerta {
 
 QuantizedLevel ZeroLevel(uint32_t num_edges) {
-  return {LargeArray<int32_t>(num_edges), LargeArray<int32_t>(size_t{2} * num_edges)};
+  return {std::vector<int32_t>(num_edges), std::vector<int32_t>(size_t{2} * num_edges)};
 }
 
 float RoundStep(float step) {

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "common/fast_point.h"
-#include "common/large_array.h"
 
 namespace lacerta {
 namespace {
@@ -13,9 +12,9 @@ namespace {
 // Unit normals of the vertices: #V. A triangle counts with the sine of its angle at the vertex, so that neither its size nor its
 // slenderness matters.
 std::vector<Vec3f> VertexNormals(const Topology& t, Span<const Vec3f> positions) {
-  std::vector<Vec3f> directions = LargeArray<Vec3f>(t.num_edges());  // unit
+  std::vector<Vec3f> directions(t.num_edges());  // unit
   for (uint32_t e = 0; e < t.num_edges(); ++e) directions[e] = Normalized(positions[t.edges[e][1]] - positions[t.edges[e][0]]);
-  std::vector<Vec3f> normals = LargeArray<Vec3f>(t.num_vertices);
+  std::vector<Vec3f> normals(t.num_vertices);
   for (uint32_t f = 0; f < t.num_faces(); ++f) {
     const Triangle& corners = t.triangles[f];
     std::array<Vec3f, 3> sides;  // opposite to the corners, counterclockwise
@@ -60,7 +59,7 @@ template <typename Point>
 std::vector<Vec3f> Offsets(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints, Span<const Vec3f> frame_normals) {
   const std::vector<Vec3f> normals = VertexNormals(coarse, positions);
   const std::vector<uint32_t> opposite_pairs = OppositePairs(coarse);
-  std::vector<Vec3f> offsets = LargeArray<Vec3f>(coarse.num_edges());
+  std::vector<Vec3f> offsets(coarse.num_edges());
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     if (!IsSmooth(coarse, e)) continue;
     const auto& [a, b] = coarse.edges[e];

@@ -3,8 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "common/large_array.h"
-
 namespace lacerta {
 namespace {
 
@@ -35,7 +33,7 @@ LocalFrame FrameWithNormal(const Topology& coarse, Span<const Vec3f> positions, 
 }
 
 std::vector<Vec3f> FrameNormals(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints) {
-  std::vector<Vec3f> normals = LargeArray<Vec3f>(coarse.num_edges());  // area vectors around, at first
+  std::vector<Vec3f> normals(coarse.num_edges());  // area vectors around, at first
   for (uint32_t f = 0; f < coarse.num_faces(); ++f) {
     const SplitFace split(coarse, positions, midpoints, f);
     const Vec3f middle = split.InMiddle();

@@ -1,7 +1,5 @@
 #include "common/subdivision.h"
 
-#include "common/large_array.h"
-
 namespace lacerta {
 namespace {
 
@@ -19,12 +17,12 @@ Topology Refine(const Topology& c) {
   Topology t;
   t.num_vertices = V + E;
   t.triangles = RefineTriangles(c);
-  GrowLarge(&t.face_edges, size_t{4} * F);
-  GrowLarge(&t.edges, size_t{2} * E + size_t{3} * F);
-  GrowLarge(&t.edge_faces, t.edges.size());
+  t.face_edges.resize(size_t{4} * F);
+  t.edges.resize(size_t{2} * E + size_t{3} * F);
+  t.edge_faces.resize(t.edges.size());
   t.valence = c.valence;
   t.valence.resize(t.num_vertices);
-  GrowLarge(&t.on_curve, t.edges.size());
+  t.on_curve.assign(t.edges.size(), 0);
   t.role = c.role;
   t.role.resize(t.num_vertices);
   if (!c.master.empty()) t.master.assign(t.edges.size(), kNone);
@@ -63,14 +61,14 @@ Topology Refine(const Topology& c) {
 }
 
 std::vector<Triangle> RefineTriangles(const Topology& c) {
-  std::vector<Triangle> triangles = LargeArray<Triangle>(size_t{4} * c.num_faces());
+  std::vector<Triangle> triangles(size_t{4} * c.num_faces());
   for (uint32_t f = 0; f < c.num_faces(); ++f) Split(c.triangles[f], c.face_edges[f], c.num_vertices, &triangles[size_t{4} * f]);
   return triangles;
 }
 
 std::vector<Triangle> RefineTrianglesTwice(const Topology& c) {
   const uint32_t V = c.num_vertices, E = c.num_edges();
-  std::vector<Triangle> triangles = LargeArray<Triangle>(size_t{16} * c.num_faces());
+  std::vector<Triangle> triangles(size_t{16} * c.num_faces());
   for (uint32_t f = 0; f < c.num_faces(); ++f) {
     const Triangle& tri = c.triangles[f];
     const auto& fe = c.face_edges[f];
@@ -99,7 +97,7 @@ Topology RefineWithoutEdges(const Topology& c) {
 }
 
 std::vector<uint32_t> OppositePairs(const Topology& t) {
-  std::vector<uint32_t> pairs = LargeArray<uint32_t>(t.num_edges());
+  std::vector<uint32_t> pairs(t.num_edges());
   for (uint32_t f = 0; f < t.num_faces(); ++f) {
     for (size_t k = 0; k < 3; ++k) pairs[t.face_edges[f][k]] ^= t.triangles[f][k];
   }

@@ -5,14 +5,13 @@
 #include <utility>
 
 #include "common/fast_point.h"
-#include "common/large_array.h"
 
 namespace lacerta {
 namespace {
 
 // Of every half both edges next to it around its end, one in either face, by exclusive or, so that one of them gives the other: 2 #E.
 std::vector<uint32_t> NextSpokes(const Topology& t) {
-  std::vector<uint32_t> spokes = LargeArray<uint32_t>(size_t{2} * t.num_edges());
+  std::vector<uint32_t> spokes(size_t{2} * t.num_edges());
   for (uint32_t f = 0; f < t.num_faces(); ++f) {
     const auto& sides = t.face_edges[f];
     for (size_t k = 0; k < 3; ++k) {
@@ -114,7 +113,7 @@ class RefinedStencils {
 
 void PredictRefinedMidpoints(const Topology& t, const StencilTable& table, std::vector<Vec3f>* positions) {
   const size_t first = positions->size();
-  GrowLarge(positions, first + size_t{2} * t.num_edges() + size_t{3} * t.num_faces());
+  positions->resize(first + size_t{2} * t.num_edges() + size_t{3} * t.num_faces());
   const RefinedStencils stencils(t, table, positions->data());
   Vec3f* next = positions->data() + first;
   for (uint32_t e = 0; e < t.num_edges(); ++e) {

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <cstring>
 
-#include "common/large_array.h"
-
 namespace lacerta {
 namespace {
 
@@ -63,7 +61,7 @@ double Angle(double sine, double cosine) {
 
 std::vector<Vec3f> SmoothNormals(Span<const Vec3f> positions, Span<const Triangle> triangles) {
   const std::vector<uint32_t> representative = Representatives(positions);
-  std::vector<Vec3d> sums = LargeArray<Vec3d>(positions.size());
+  std::vector<Vec3d> sums(positions.size());
   for (const Triangle& triangle : triangles) {
     const Vec3d p[3] = {Vec3Cast<double>(positions[triangle[0]]), Vec3Cast<double>(positions[triangle[1]]),
                         Vec3Cast<double>(positions[triangle[2]])};
@@ -77,7 +75,7 @@ std::vector<Vec3f> SmoothNormals(Span<const Vec3f> positions, Span<const Triangl
       sums[representative[triangle[static_cast<size_t>(i)]]] += normal * angle;
     }
   }
-  std::vector<Vec3f> normals = LargeArray<Vec3f>(positions.size());
+  std::vector<Vec3f> normals(positions.size());
   for (size_t v = 0; v < normals.size(); ++v) {
     const Vec3d normal = Normalized(sums[representative[v]]);
     normals[v] = normal == Vec3d{} ? Vec3f{0.0f, 0.0f, 1.0f} : Vec3Cast<float>(normal);
