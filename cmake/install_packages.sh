@@ -17,7 +17,7 @@ set -euo pipefail
 packages_of() {
   case $1 in
     build) echo cmake ninja-build g++ libdraco-dev draco libtinygltf-dev libeigen3-dev libtbb-dev \
-      nlohmann-json3-dev libmeshoptimizer-dev libcli11-dev libgtest-dev libgmock-dev libbenchmark-dev python3 ;;
+      nlohmann-json3-dev libmeshoptimizer-dev libcli11-dev libgtest-dev libgmock-dev libbenchmark-dev python3 python3-jsonschema ;;
     demo) echo libcgal-demo draco python3 ;;
     picture) echo f3d xvfb xauth imagemagick fonts-dejavu-core ;;
     plot) echo gnuplot-nox fonts-dejavu-core ;;

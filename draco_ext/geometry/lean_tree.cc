@@ -17,18 +17,6 @@ struct LeanTree::KeyedFace {
   bool operator<(const KeyedFace& b) const { return key != b.key ? key < b.key : face < b.face; }
 };
 
-struct LeanTree::Box {
-  Vec3f low{FLT_MAX, FLT_MAX, FLT_MAX}, high{-FLT_MAX, -FLT_MAX, -FLT_MAX};
-
-  void Add(const Vec3f& p) { Add(p, p); }
-  void Add(const Vec3f& other_low, const Vec3f& other_high) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], other_low[axis]);
-      high[axis] = std::max(high[axis], other_high[axis]);
-    }
-  }
-};
-
 struct LeanTree::Search {
   Vec3d p;
   double bound2 = std::numeric_limits<double>::infinity();
@@ -71,9 +59,9 @@ LeanTree::Range LeanTree::ChildOf(Range range, uint32_t k) {
 }
 
 LeanTree::LeanTree(const TriangleMesh& mesh) : mesh_(mesh) {
-  Box box;
+  BoundingBox box;
   for (const Triangle& t : mesh.triangles) {
-    for (const uint32_t v : t) box.Add(mesh.positions[v]);
+    for (const uint32_t v : t) Extend(mesh.positions[v], &box);
   }
   origin_ = box.low * 0.5f + box.high * 0.5f;
   float largest = 0;
@@ -96,8 +84,8 @@ LeanTree::LeanTree(const TriangleMesh& mesh) : mesh_(mesh) {
 // Halves faces across the longest side of the box of their centers, `depth` times.
 void LeanTree::Sort(KeyedFace* faces, size_t count, int depth) const {
   if (depth == 0 || count < 2) return;
-  Box box;
-  for (size_t i = 0; i < count; ++i) box.Add(CenterOf(mesh_, faces[i].face));
+  BoundingBox box;
+  for (size_t i = 0; i < count; ++i) Extend(CenterOf(mesh_, faces[i].face), &box);
   const Vec3f sides = box.high - box.low;
   const int axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
   for (size_t i = 0; i < count; ++i) faces[i].key = CenterOf(mesh_, faces[i].face)[axis];
@@ -107,8 +95,8 @@ void LeanTree::Sort(KeyedFace* faces, size_t count, int depth) const {
 }
 
 // Boxes of a node and all below it; returns the one around them.
-LeanTree::Box LeanTree::FillNode(uint32_t index, Range range, int depth) {
-  std::array<Box, kWidth> boxes;
+BoundingBox LeanTree::FillNode(uint32_t index, Range range, int depth) {
+  std::array<BoundingBox, kWidth> boxes;
   const auto fill = [&](uint32_t k) {
     const Range child = ChildOf(range, k);
     if (depth + 1 < depth_) {
@@ -116,15 +104,15 @@ LeanTree::Box LeanTree::FillNode(uint32_t index, Range range, int depth) {
       return;
     }
     for (uint32_t slot = child.first; slot < child.last; ++slot) {
-      for (const uint32_t v : mesh_.triangles[faces_[slot]]) boxes[k].Add(mesh_.positions[v] - origin_);
+      for (const uint32_t v : mesh_.triangles[faces_[slot]]) Extend(mesh_.positions[v] - origin_, &boxes[k]);
     }
   };
   ForHalves(range.last - range.first, [&](int half) {
     for (uint32_t k = 0; k < 2; ++k) fill(2 * static_cast<uint32_t>(half) + k);
   });
-  Box all;
+  BoundingBox all;
   for (uint32_t k = 0; k < kWidth; ++k) {
-    all.Add(boxes[k].low, boxes[k].high);
+    Extend(boxes[k], &all);
     for (int axis = 0; axis < 3; ++axis) {
       nodes_[index].low[axis][k] = boxes[k].low[axis] - padding_;
       nodes_[index].high[axis][k] = boxes[k].high[axis] + padding_;
@@ -190,8 +178,8 @@ uint64_t LeanTree::NumFacesAround(const Vec3f& point) const {
     const Entry top = stack[--size];
     if (top.depth == depth_) {
       for (uint32_t slot = top.range.first; slot < top.range.last; ++slot) {
-        Box box;
-        for (const uint32_t v : mesh_.triangles[faces_[slot]]) box.Add(mesh_.positions[v]);
+        BoundingBox box;
+        for (const uint32_t v : mesh_.triangles[faces_[slot]]) Extend(mesh_.positions[v], &box);
         const Vec3f padding{padding_, padding_, padding_};
         count += is_between(point, box.low - padding, box.high + padding) ? 1 : 0;
       }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/bounding_box.h"
 #include "lacerta/mesh.h"
 
 namespace lacerta {
@@ -53,13 +54,12 @@ class LeanTree {
   };
   // Each of at most 15 levels leaves three children waiting.
   static constexpr size_t kStackSize = 3 * 15 + 2;
-  struct Box;
   struct KeyedFace;
   struct Search;
 
   static Range ChildOf(Range range, uint32_t k);
   void Sort(KeyedFace* faces, size_t count, int depth) const;
-  Box FillNode(uint32_t node, Range range, int depth);
+  BoundingBox FillNode(uint32_t node, Range range, int depth);
   void TestFace(uint32_t face, Search* search) const;
   uint64_t NumFacesAround(const Vec3f& point) const;
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "geometry/bounding_box.h"
 #include "geometry/for_each_branch.h"
 
 namespace lacerta {
@@ -18,24 +19,11 @@ constexpr int kMaxBins = 16;
 // Ranges at least this long are split by several threads.
 constexpr std::ptrdiff_t kParallelSize = 8192;
 
-struct Box {
-  Vec3f min{FLT_MAX, FLT_MAX, FLT_MAX};
-  Vec3f max{-FLT_MAX, -FLT_MAX, -FLT_MAX};
-
-  void Add(const Vec3f& p) {
-    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
-    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
-  }
-  void Add(const Box& b) {
-    min = {std::min(min.x, b.min.x), std::min(min.y, b.min.y), std::min(min.z, b.min.z)};
-    max = {std::max(max.x, b.max.x), std::max(max.y, b.max.y), std::max(max.z, b.max.z)};
-  }
-  // Half the surface; 0 for an empty box.
-  float HalfArea() const {
-    const Vec3f d = max - min;
-    return d.x < 0.0f ? 0.0f : d.x * d.y + d.y * d.z + d.z * d.x;
-  }
-};
+// Half the surface; 0 for an empty box.
+float HalfArea(const BoundingBox& box) {
+  const Vec3f d = box.high - box.low;
+  return IsEmpty(box) ? 0.0f : d.x * d.y + d.y * d.z + d.z * d.x;
+}
 
 // Faces that two levels of subdivision make of one.
 constexpr uint32_t kGroupSize = 16;
@@ -61,9 +49,9 @@ bool IsInOrderOfSubdivision(const std::vector<Triangle>& t) {
 }  // namespace
 
 struct TriangleTree::Reference {
-  Box box;
+  BoundingBox box;
   uint32_t face;  // the first one
-  Vec3f Center() const { return (box.min + box.max) * 0.5f; }
+  Vec3f Center() const { return (box.low + box.high) * 0.5f; }
 };
 
 struct TriangleTree::Building {
@@ -76,13 +64,13 @@ namespace {
 
 // The middle of the box of what faces use; zero where there is none.
 Vec3f MiddleOf(const TriangleMesh& mesh) {
-  Box box;
+  BoundingBox box;
   for (const Triangle& t : mesh.triangles) {
     for (const uint32_t v : t) {
-      if (v < mesh.positions.size() && TriangleTree::IsUsable(mesh.positions[v])) box.Add(mesh.positions[v]);
+      if (v < mesh.positions.size() && TriangleTree::IsUsable(mesh.positions[v])) Extend(mesh.positions[v], &box);
     }
   }
-  return box.min * 0.5f + box.max * 0.5f;
+  return box.low * 0.5f + box.high * 0.5f;
 }
 
 }  // namespace
@@ -102,13 +90,13 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
       for (uint32_t f = first; f < first + size; ++f) {
         for (const uint32_t v : mesh.triangles[f]) {
           usable = usable && v < mesh.positions.size() && IsUsable(mesh.positions[v]);
-          if (usable) reference.box.Add(mesh.positions[v] - origin_);
+          if (usable) Extend(mesh.positions[v] - origin_, &reference.box);
         }
       }
       complete = complete && usable;
       if (!usable) continue;
       for (int k = 0; k < 3; ++k) {
-        largest = std::max({largest, std::fabs(reference.box.min[k]), std::fabs(reference.box.max[k])});
+        largest = std::max({largest, std::fabs(reference.box.low[k]), std::fabs(reference.box.high[k])});
       }
       references.push_back(reference);
     }
@@ -145,39 +133,39 @@ namespace {
 // and returns where. Trying all three axes doubles the time to build and gains queries less than 5 %.
 template <typename Reference>
 Reference* Split(Reference* first, Reference* last, bool halve) {
-  Box centers;
-  for (const Reference* r = first; r != last; ++r) centers.Add(r->Center());
-  const Vec3f extent = centers.max - centers.min;
+  BoundingBox centers;
+  for (const Reference* r = first; r != last; ++r) Extend(r->Center(), &centers);
+  const Vec3f extent = centers.high - centers.low;
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   const int num_bins = static_cast<int>(std::min<std::ptrdiff_t>(last - first, kMaxBins));
   const float bins_per_length = static_cast<float>(num_bins) / extent[axis];
   if (!halve && std::isfinite(bins_per_length)) {
     const auto bin_of = [&](const Reference& r) {
-      return std::min(static_cast<int>((r.Center()[axis] - centers.min[axis]) * bins_per_length), num_bins - 1);
+      return std::min(static_cast<int>((r.Center()[axis] - centers.low[axis]) * bins_per_length), num_bins - 1);
     };
-    Box boxes[kMaxBins];
+    BoundingBox boxes[kMaxBins];
     uint32_t counts[kMaxBins] = {};
     for (const Reference* r = first; r != last; ++r) {
       const int bin = bin_of(*r);
-      boxes[bin].Add(r->box);
+      Extend(r->box, &boxes[bin]);
       ++counts[bin];
     }
     float cost_after[kMaxBins];  // of the bins from k on
-    Box after;
+    BoundingBox after;
     uint32_t num_after = 0;
     for (int k = num_bins - 1; k > 0; --k) {
-      after.Add(boxes[k]);
+      Extend(boxes[k], &after);
       num_after += counts[k];
-      cost_after[k] = after.HalfArea() * static_cast<float>(num_after);
+      cost_after[k] = HalfArea(after) * static_cast<float>(num_after);
     }
     float best_cost = FLT_MAX;
     int best_bin = 0;
-    Box before;
+    BoundingBox before;
     uint32_t num_before = 0;
     for (int k = 1; k < num_bins; ++k) {
-      before.Add(boxes[k - 1]);
+      Extend(boxes[k - 1], &before);
       num_before += counts[k - 1];
-      const float cost = before.HalfArea() * static_cast<float>(num_before) + cost_after[k];
+      const float cost = HalfArea(before) * static_cast<float>(num_before) + cost_after[k];
       if (num_before > 0 && num_before < last - first && cost < best_cost) {
         best_cost = cost;
         best_bin = k;
@@ -195,10 +183,10 @@ Reference* Split(Reference* first, Reference* last, bool halve) {
 
 // The box of child k of a node; a missing child has an empty one.
 template <typename Node>
-void SetBox(const Box& box, float padding, int k, Node* node) {
-  const bool is_missing = box.min.x > box.max.x;
-  const Vec3f center = is_missing ? Vec3f() : (box.min + box.max) * 0.5f;
-  const Vec3f half_size = is_missing ? Vec3f{-FLT_MAX, -FLT_MAX, -FLT_MAX} : (box.max - box.min) * 0.5f + Vec3f{padding, padding, padding};
+void SetBox(const BoundingBox& box, float padding, int k, Node* node) {
+  const bool is_missing = IsEmpty(box);
+  const Vec3f center = is_missing ? Vec3f() : (box.low + box.high) * 0.5f;
+  const Vec3f half_size = is_missing ? Vec3f{-FLT_MAX, -FLT_MAX, -FLT_MAX} : (box.high - box.low) * 0.5f + Vec3f{padding, padding, padding};
   for (int axis = 0; axis < 3; ++axis) {
     node->center[axis][k] = center[axis];
     node->half_size[axis][k] = half_size[axis];
@@ -259,8 +247,8 @@ uint32_t TriangleTree::BuildNode(const Building& building, Reference* first, Ref
 
   Node& node = (*nodes)[index];
   for (int k = 0; k < kWidth; ++k) {
-    Box box;
-    for (const Reference* r = ends[std::min(k, num_parts)]; r != ends[std::min(k + 1, num_parts)]; ++r) box.Add(r->box);
+    BoundingBox box;
+    for (const Reference* r = ends[std::min(k, num_parts)]; r != ends[std::min(k + 1, num_parts)]; ++r) Extend(r->box, &box);
     SetBox(box, padding_, k, &node);
     node.child[k] = children[k];
     node.count[k] = 0;
@@ -277,9 +265,9 @@ TriangleTree::Node TriangleTree::GroupNode(const TriangleMesh& mesh, uint32_t fi
   constexpr uint32_t kPartSize = kGroupSize / kWidth;
   Node node;
   for (uint32_t k = 0; k < kWidth; ++k) {
-    Box box;
+    BoundingBox box;
     for (uint32_t i = k * kPartSize; i < (k + 1) * kPartSize; ++i) {
-      for (const uint32_t v : mesh.triangles[first_face + i]) box.Add(mesh.positions[v] - origin_);
+      for (const uint32_t v : mesh.triangles[first_face + i]) Extend(mesh.positions[v] - origin_, &box);
     }
     SetBox(box, padding_, static_cast<int>(k), &node);
     node.child[k] = first_slot + k * kPartSize;

@@ -144,10 +144,12 @@ StatusOr<Json> ParseGltfJson(std::string_view text) {
   return json;
 }
 
+bool IsGlb(Span<const uint8_t> bytes) { return bytes.size() >= 4 && ReadUint32(bytes, 0) == kMagic; }
+
 StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& folder) {
   Chunks chunks;
   chunks.json = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-  if (bytes.size() >= 4 && ReadUint32(bytes, 0) == kMagic) {
+  if (IsGlb(bytes)) {
     LACERTA_ASSIGN_OR_RETURN(chunks, SplitGlb(bytes));
   }
   GltfDocument document;

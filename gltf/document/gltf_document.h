@@ -25,6 +25,9 @@ struct GltfDocument {
 // (version).
 StatusOr<Json> ParseGltfJson(std::string_view text);
 
+// Whether the bytes begin as a GLB does.
+bool IsGlb(Span<const uint8_t> bytes);
+
 // Reads a .glb (by its magic) or .gltf. External buffers are looked for in `folder`; one that holds nothing but
 // refinements of LACERTA_mesh_progressive may be missing or short, as if it had been trimmed. A GLB whose BIN chunk was cut off
 // is accepted with the bytes that are there; what refers to the missing ones fails when it is looked at. Every

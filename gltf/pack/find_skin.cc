@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -38,24 +37,17 @@ uint64_t FirstAlike(const GltfDocument& document, uint64_t skin) {
 
 // By which nodes show the meshes of the sources: one, or several that all of these meshes have. None twice.
 StatusOr<std::set<uint64_t>> SkinsOf(const GltfDocument& document, const std::vector<const Source*>& sources) {
-  std::map<uint64_t, std::set<uint64_t>> skins_of_mesh;
-  for (const Source* source : sources) {
-    for (const Place& place : source->places) skins_of_mesh[place.mesh];
-  }
-  for (uint64_t n = 0; n < ArraySize(document.json, "nodes"); ++n) {
-    const Json& node = *FindElement(document.json, "nodes", n);
-    const std::optional<uint64_t> mesh = AsIndex(Find(node, "mesh"));
-    const auto known = mesh.has_value() ? skins_of_mesh.find(*mesh) : skins_of_mesh.end();
-    if (known == skins_of_mesh.end()) continue;
-    const std::optional<uint64_t> skin = AsIndex(Find(node, "skin"));
-    if (!skin.has_value()) return Unsupported("has joints, but node " + std::to_string(n) + " shows it without a skin");
-    known->second.insert(FirstAlike(document, *skin));
-  }
   std::set<uint64_t> skins;
-  for (const auto& [mesh, own] : skins_of_mesh) {
+  for (const auto& [mesh, nodes] : NodesByMesh(document, sources)) {
+    std::set<uint64_t> own;
+    for (const uint64_t n : nodes) {
+      const std::optional<uint64_t> skin = AsIndex(Find(*FindElement(document.json, "nodes", n), "skin"));
+      if (!skin.has_value()) return Unsupported("has joints, but node " + std::to_string(n) + " shows it without a skin");
+      own.insert(FirstAlike(document, *skin));
+    }
     if (own.empty()) continue;
     if (!skins.empty() && skins != own) return Unsupported("touches what another skin moves");
-    skins = own;
+    skins = std::move(own);
   }
   if (skins.empty()) return Unsupported("has joints, but no node shows it with a skin");
   return skins;

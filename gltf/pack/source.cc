@@ -1,7 +1,6 @@
 #include "pack/source.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "document/buffer_edit.h"
@@ -146,6 +145,19 @@ StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document) {
     sources.push_back(std::move(source));
   }
   return Merge(std::move(sources));
+}
+
+std::map<uint64_t, std::vector<uint64_t>> NodesByMesh(const GltfDocument& document, const std::vector<const Source*>& sources) {
+  std::map<uint64_t, std::vector<uint64_t>> nodes_by_mesh;
+  for (const Source* source : sources) {
+    for (const Place& place : source->places) nodes_by_mesh[place.mesh];
+  }
+  for (uint64_t n = 0; n < ArraySize(document.json, "nodes"); ++n) {
+    const std::optional<uint64_t> mesh = AsIndex(Find(*FindElement(document.json, "nodes", n), "mesh"));
+    const auto known = mesh.has_value() ? nodes_by_mesh.find(*mesh) : nodes_by_mesh.end();
+    if (known != nodes_by_mesh.end()) known->second.push_back(n);
+  }
+  return nodes_by_mesh;
 }
 
 }  // namespace lacerta

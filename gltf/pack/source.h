@@ -3,6 +3,7 @@
 #define LACERTA_PACK_SOURCE_H_
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,9 @@ StatusOr<std::vector<MorphTarget>> ReadTargets(const GltfDocument& document, con
 // Fails with kInvalidData on damaged data and on numbers that are not finite, naming mesh, primitive, accessor and index; what is legal but cannot be
 // compressed ends as a reason.
 StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document);
+
+// The meshes that the sources are in, and the nodes that show each of them.
+std::map<uint64_t, std::vector<uint64_t>> NodesByMesh(const GltfDocument& document, const std::vector<const Source*>& sources);
 
 }  // namespace lacerta
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -81,20 +80,14 @@ class MixesSeen {
 std::vector<TargetMix> FindTargetMixes(const GltfDocument& document, const std::vector<WeightTrack>& tracks, const std::vector<const Source*>& sources,
                                        size_t num_targets) {
   MixesSeen seen(num_targets);
-  std::set<uint64_t> meshes, nodes;
-  for (const Source* source : sources) {
-    for (const Place& place : source->places) meshes.insert(place.mesh);
-  }
-  for (const uint64_t mesh : meshes) seen.Add(Find(*FindElement(document.json, "meshes", mesh), "weights"));
-  for (uint64_t n = 0; n < ArraySize(document.json, "nodes"); ++n) {
-    const Json& node = *FindElement(document.json, "nodes", n);
-    const std::optional<uint64_t> mesh = AsIndex(Find(node, "mesh"));
-    if (!mesh.has_value() || meshes.count(*mesh) == 0) continue;
-    nodes.insert(n);
-    seen.Add(Find(node, "weights"));
+  std::set<uint64_t> shown_by;
+  for (const auto& [mesh, nodes] : NodesByMesh(document, sources)) {
+    seen.Add(Find(*FindElement(document.json, "meshes", mesh), "weights"));
+    for (const uint64_t n : nodes) seen.Add(Find(*FindElement(document.json, "nodes", n), "weights"));
+    shown_by.insert(nodes.begin(), nodes.end());
   }
   for (const WeightTrack& track : tracks) {
-    if (nodes.count(track.node) > 0) seen.Add(track);
+    if (shown_by.count(track.node) > 0) seen.Add(track);
   }
   return seen.Choose();
 }

@@ -40,11 +40,8 @@ struct Source {
   Bytes data;                     // as much as there is
 };
 
-StatusOr<Source> Read(Span<const uint8_t> asset, const TrimOptions& options, std::vector<std::string>* notes) {
-  Source source;
-  LACERTA_ASSIGN_OR_RETURN(source.document, ParseGltf(asset, options.folder));
-  if (options.embed_images) EmbedImages(ImageFiles::kEmbed, &source.document, notes);
-  LACERTA_ASSIGN_OR_RETURN(source.progressive, ParseProgressive(source.document));
+StatusOr<Source> ReadSource(GltfDocument document, Progressive progressive) {
+  Source source{std::move(document), std::move(progressive), {}, {}};
   LACERTA_ASSIGN_OR_RETURN(source.data, TransmittedBytes(source.document, source.progressive));
   uint64_t offset = 0;
   for (const Segment& segment : source.progressive.segments) {
@@ -74,6 +71,14 @@ StatusOr<Bytes> Write(const Source& source, const std::vector<size_t>& order, si
   return FormatGlb(document);
 }
 
+// An asset without levels, as it is: it is all base, and so are those of a library whose meshes are all stored without.
+StatusOr<Bytes> Whole(Span<const uint8_t> asset, bool has_new_buffers, GltfDocument* document) {
+  if (!IsGlb(asset)) return Unsupported("no mesh of it has levels: there is nothing to trim");
+  if (!has_new_buffers) return Bytes(asset.begin(), asset.end());
+  LACERTA_RETURN_IF_ERROR(MergeBuffers(document));
+  return FormatGlb(*document);
+}
+
 }  // namespace
 
 StatusOr<TrimResult> TrimGltf(Span<const uint8_t> asset, const TrimOptions& options) {
@@ -81,7 +86,18 @@ StatusOr<TrimResult> TrimGltf(Span<const uint8_t> asset, const TrimOptions& opti
     return InvalidArgument("either a level or a number of bytes has to be given");
   }
   TrimResult result;
-  LACERTA_ASSIGN_OR_RETURN(const Source source, Read(asset, options, &result.notes));
+  LACERTA_ASSIGN_OR_RETURN(GltfDocument document, ParseGltf(asset, options.folder));
+  const size_t num_buffers = document.buffers.size();
+  if (options.embed_images) EmbedImages(ImageFiles::kEmbed, &document, &result.notes);
+  StatusOr<Progressive> progressive = ParseProgressive(document);
+  if (progressive.status().code() == StatusCode::kNotFound) {
+    result.has_levels = false;
+    LACERTA_ASSIGN_OR_RETURN(result.glb, Whole(asset, document.buffers.size() > num_buffers, &document));
+    result.meets_bytes = !options.bytes.has_value() || result.glb.size() <= *options.bytes;
+    return result;
+  }
+  LACERTA_RETURN_IF_ERROR(progressive.status());
+  LACERTA_ASSIGN_OR_RETURN(const Source source, ReadSource(std::move(document), std::move(progressive).value()));
   const std::vector<uint64_t> levels = LevelsOf(source.progressive.segments, source.progressive.streams.size());
   size_t count = levels.size();
   const uint64_t level = options.level.has_value() ? static_cast<uint64_t>(std::max(*options.level, 0)) : ~uint64_t{0};

@@ -1,7 +1,5 @@
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,30 +37,13 @@ StatusOr<TrimResult> TrimStream(const Bytes& stream, const TrimArguments& argume
   return result;
 }
 
-// An asset without levels is all base: as it is, and so are those of a library whose meshes are all stored without.
-StatusOr<TrimResult> KeepWhole(const Bytes& bytes, const TrimArguments& arguments) {
-  constexpr char kMagic[] = {'g', 'l', 'T', 'F'};
-  if (bytes.size() < sizeof(kMagic) || !std::equal(std::begin(kMagic), std::end(kMagic), bytes.begin())) {
-    return Unsupported("no mesh of it has levels: there is nothing to trim");
-  }
-  TrimResult result;
-  result.glb = bytes;
-  result.meets_bytes = !arguments.bytes.has_value() || bytes.size() <= *arguments.bytes;
-  return result;
-}
-
-StatusOr<TrimResult> Trim(const Bytes& bytes, MeshFormat format, const BatchItem& item, const TrimArguments& arguments, bool* has_levels) {
-  *has_levels = true;
+StatusOr<TrimResult> Trim(const Bytes& bytes, MeshFormat format, const BatchItem& item, const TrimArguments& arguments) {
   if (format == MeshFormat::kDrc) return TrimStream(bytes, arguments);
   if (format != MeshFormat::kGltf) return Unsupported("is not packed; trim takes .glb, .gltf and .drc");
-  const std::string folder = std::filesystem::path(item.input).parent_path().string();
-  const StatusOr<AssetInfo> info = DescribeGltf(bytes, folder);
-  *has_levels = !info.ok() || !info.value().streams.empty();
-  if (!*has_levels) return KeepWhole(bytes, arguments);
   TrimOptions options;
   options.level = arguments.level;
   options.bytes = arguments.bytes;
-  options.folder = folder;
+  options.folder = std::filesystem::path(item.input).parent_path().string();
   options.embed_images = AreApart(item.input, item.output);
   return TrimGltf(bytes, options);
 }
@@ -71,9 +52,9 @@ StatusOr<FileOutcome> TrimFile(const TrimArguments& arguments, const BatchItem& 
   LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadInput(item.input));
   const StatusOr<MeshFormat> format = DetectMeshFormat(item.input, bytes);
   if (!format.ok()) return format.status().WithContext(item.input);
-  bool has_levels = true;
-  const StatusOr<TrimResult> trimmed = Trim(bytes, format.value(), item, arguments, &has_levels);
+  const StatusOr<TrimResult> trimmed = Trim(bytes, format.value(), item, arguments);
   if (!trimmed.ok()) return trimmed.status().WithContext(item.input);
+  const bool has_levels = trimmed.value().has_levels;
   LACERTA_RETURN_IF_ERROR(WriteOutput(item.output, trimmed.value().glb));
   FileOutcome outcome;
   outcome.exit_code = trimmed.value().meets_bytes ? kExitOk : kExitTargetMissed;

@@ -176,13 +176,14 @@ struct TrimOptions {
 
 struct TrimResult {
   Bytes glb;
+  bool has_levels = true;   // false: no mesh has any, and the asset stays whole
   bool meets_bytes = true;  // false: even the base meshes and all that is not geometry are larger
   std::vector<std::string> notes;  // images that stay references
 };
 
 // A packed asset with fewer refinements, as a legal asset again: the segments that stay are whole, everything else is as
-// it was, and the fallback with it. Refinements in a file of their own come back into the GLB. Fails with
-// kInvalidArgument, kNotFound where the asset is not packed, and like ReadProgressive.
+// it was, and the fallback with it. Refinements in a file of their own come back into the GLB. A GLB of which no mesh has levels stays as it is, but for
+// images. Fails with kInvalidArgument, kUnsupported where there is nothing to trim and no GLB, and like ReadProgressive.
 StatusOr<TrimResult> TrimGltf(Span<const uint8_t> asset, const TrimOptions& options);
 
 struct ValidateOptions {

@@ -5,6 +5,7 @@
 
 #include "document/gltf_document.h"
 #include "extension/progressive.h"
+#include "gltf/test_bytes.h"
 #include "gltf/test_images.h"
 #include "gltf/two_streams.h"
 #include "lacerta/file_io.h"
@@ -119,7 +120,34 @@ TEST(Trim, RefusesWhatMakesNoSense) {
   EXPECT_EQ(TrimGltf(TwoStreams().glb, {}).status().code(), StatusCode::kInvalidArgument);
   TrimOptions options;
   options.level = 0;
-  EXPECT_EQ(TrimGltf(testing::TwoBalls(), options).status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(TrimGltf(testing::FromText(R"({"asset": {"version": "2.0"}})"), options).status().code(), StatusCode::kUnsupported);
+}
+
+TEST(Trim, KeepsWhatHasNoLevelsWholeAndTakesItsImagesAlong) {
+  TrimOptions options;
+  options.bytes = 10;
+  const TrimResult same = TrimGltf(testing::TwoBalls(), options).value();
+  EXPECT_EQ(same.glb, testing::TwoBalls());
+  EXPECT_FALSE(same.has_levels);
+  EXPECT_FALSE(same.meets_bytes);
+  GltfDocument document = ParseGltf(testing::TwoBalls(), "").value();
+  document.json["images"] = {{{"uri", "a.png"}}};
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "lacerta_trim_whole";
+  std::filesystem::create_directories(folder);
+  const Bytes png = testing::Png(8, 8);
+  ASSERT_TRUE(WriteFileAtomically((folder / "a.png").string(), png).ok());
+  options.folder = folder.string();
+  options.bytes = 1'000'000;
+  const Bytes asset = FormatGlb(document);
+  EXPECT_EQ(TrimGltf(asset, options).value().glb, asset);
+  options.embed_images = true;
+  const TrimResult whole = TrimGltf(asset, options).value();
+  std::filesystem::remove_all(folder);
+  EXPECT_TRUE(whole.meets_bytes);
+  const GltfDocument kept = ParseGltf(whole.glb, "").value();
+  EXPECT_EQ(kept.json["meshes"], document.json["meshes"]);
+  const auto view = BufferViewBytes(kept, kept.json["images"][0].at("bufferView").get<uint64_t>());
+  EXPECT_EQ(Bytes(view.value().begin(), view.value().end()), png);
 }
 
 TEST(External, RefinementsAreInAFileOfTheirOwn) {
