@@ -197,6 +197,13 @@ AccessorData MakeFloatAccessor(const std::vector<Vec3f>& values) {
   return MakeFloatAccessor(components, 3);
 }
 
+std::vector<Vec3f> VectorsOf(const AccessorData& data) {
+  std::vector<Vec3f> vectors;
+  vectors.reserve(static_cast<size_t>(data.count));
+  for (uint64_t i = 0; i < data.count; ++i) vectors.push_back({data.Float(i, 0), data.Float(i, 1), data.Float(i, 2)});
+  return vectors;
+}
+
 std::vector<ComponentRange> ComponentRanges(const AccessorData& data) {
   std::vector<ComponentRange> ranges;
   for (uint32_t c = 0; c < data.components && data.count > 0; ++c) {

@@ -40,6 +40,9 @@ AccessorData MakeFloatAccessor(const std::vector<Vec3f>& values);
 // 16 bits where `num_vertices` allows it, else 32.
 AccessorData MakeIndexAccessor(const std::vector<Triangle>& triangles, uint64_t num_vertices);
 
+// Of VEC3 or VEC4, the first three components of each.
+std::vector<Vec3f> VectorsOf(const AccessorData& data);
+
 struct ComponentRange {
   float low = 0.0f, high = 0.0f;
 };

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "lacerta/attributed_mesh.h"
 #include "lacerta/mesh.h"
 
 namespace lacerta {
@@ -11,6 +12,11 @@ namespace lacerta {
 // Whether `normals` (#V) are those that SmoothNormals (decoder/smooth_normals.h) gives, but for one vertex in a hundred: within 20 degrees, which
 // leaves room for other weights and for rounding, but not for creases.
 bool NormalsAreDerivable(const TriangleMesh& mesh, const std::vector<Vec3f>& normals);
+
+// Whether every face has one normal at its three corners and, but for one face in a hundred (slivers), its own within 2 degrees: what glTF 2.0 shades a
+// surface without normals by ("flat normals", 3.7.2.1).
+//   corners  #F rows of `normals`; MeshAttribute::kNoValue x 3 for a face without
+bool NormalsAreFlat(const TriangleMesh& mesh, const std::vector<Triangle>& corners, const std::vector<Vec3f>& normals);
 
 }  // namespace lacerta
 

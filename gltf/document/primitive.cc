@@ -167,14 +167,7 @@ StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& prim
 }
 
 TriangleMesh Surface(const Primitive& primitive) {
-  TriangleMesh mesh;
-  mesh.triangles = primitive.triangles;
-  const Attribute* position = primitive.Find("POSITION");
-  mesh.positions.reserve(static_cast<size_t>(primitive.num_vertices));
-  for (uint64_t v = 0; v < primitive.num_vertices; ++v) {
-    mesh.positions.push_back({position->data.Float(v, 0), position->data.Float(v, 1), position->data.Float(v, 2)});
-  }
-  return mesh;
+  return TriangleMesh{VectorsOf(primitive.Find("POSITION")->data), primitive.triangles};
 }
 
 }  // namespace lacerta

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "decoder/smooth_normals.h"
+#include "document/normals.h"
 
 namespace lacerta {
 namespace {
@@ -150,6 +151,19 @@ void TakeOffWhatIsTheSameEverywhere(std::vector<uint32_t>* triangle_materials, F
   file->mesh.attributes = std::move(kept);
 }
 
+// Normals of flat shading need not be stored.
+void TakeOffFlatNormals(FileMesh* file) {
+  std::vector<MeshAttribute>& attributes = file->mesh.attributes;
+  const auto found = std::find_if(attributes.begin(), attributes.end(), [](const MeshAttribute& a) { return a.kind == AttributeKind::kNormal; });
+  const bool has_maps = std::any_of(file->materials.begin(), file->materials.end(), [](const FileMaterial& m) { return m.normal_image.has_value(); });
+  if (found == attributes.end() || has_maps) return;
+  std::vector<Vec3f> normals;
+  for (uint32_t row = 0; row < found->num_values(); ++row) normals.push_back(NormalAt(*found, row));
+  if (!NormalsAreFlat(file->mesh.surface, found->corners, normals)) return;
+  file->notes.emplace_back("NORMAL is left aside: it has the normals of the faces, which glTF shades by where there are none");
+  attributes.erase(found);
+}
+
 // One group for each material and set of attributes, in the order of their first faces.
 void GroupFaces(const std::vector<uint32_t>& triangle_materials, FileMesh* file) {
   AttributedMesh& mesh = file->mesh;
@@ -256,6 +270,7 @@ FileMesh ToFileMesh(FileSurface surface, std::vector<FileMaterial> materials, st
   }
   LeaveOutColorsBelowTextures(surface.triangle_materials, &file);
   TakeOffWhatIsTheSameEverywhere(&surface.triangle_materials, &file);
+  TakeOffFlatNormals(&file);
   GroupFaces(surface.triangle_materials, &file);
   return file;
 }

@@ -19,6 +19,14 @@ Status NextDataLine(TextScanner* scanner, std::string_view* line) {
   return InvalidData("the file ends too early; it is truncated");
 }
 
+// Takes the keyword off the line. The counts follow without a blank in some files, many of ModelNet among them.
+std::string_view TakeKeyword(std::string_view* line) {
+  const std::string_view word = TakeWord(line);
+  const size_t end = word.find_first_of("0123456789", word.find("OFF"));
+  if (end != word.npos) *line = {word.data() + end, word.size() - end + line->size()};
+  return word.substr(0, end);
+}
+
 // [ST][C][N][4][n]OFF: texture coordinates, colours and normals come after the position and are left aside.
 Status CheckKeyword(std::string_view keyword, std::vector<std::string>* notes) {
   if (keyword.size() < 3 || keyword.substr(keyword.size() - 3) != "OFF") {
@@ -55,13 +63,18 @@ Status ReadVertex(std::string_view line, const PositionRules& rules, TriangleMes
   return AppendPosition(xyz[0], xyz[1], xyz[2], rules, mesh);
 }
 
-Status ReadFace(std::string_view line, uint64_t face, std::vector<int64_t>* corners, TriangleMesh* mesh) {
+// A face begins on a line of its own and goes on over the next ones where some writers break it. What else is on its last line are colours.
+Status ReadFace(std::string_view line, uint64_t face, TextScanner* scanner, std::vector<int64_t>* corners, TriangleMesh* mesh) {
   uint64_t count = 0;
   LACERTA_RETURN_IF_ERROR(ParseCount(&line, "corners of a face", &count));
-  LACERTA_RETURN_IF_ERROR(CheckCount(count, 2, line.size() + 1, "corners of a face"));
+  LACERTA_RETURN_IF_ERROR(CheckCount(count, 2, line.size() + scanner->bytes_left() + 1, "corners of a face"));
   corners->clear();
   for (uint64_t i = 0; i < count; ++i) {
-    const std::string_view word = TakeWord(&line);
+    std::string_view word = TakeWord(&line);
+    if (word.empty()) {
+      LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
+      word = TakeWord(&line);
+    }
     int64_t index = 0;
     if (!ParseInt(word, &index))
       return InvalidData("\"" + std::string(word.substr(0, 40)) + "\" is not a vertex index");
@@ -74,7 +87,7 @@ Status ReadAll(TextScanner* scanner, const PositionRules& rules, FileSurface* su
   TriangleMesh* const mesh = &surface->surface;
   std::string_view line;
   LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
-  LACERTA_RETURN_IF_ERROR(CheckKeyword(TakeWord(&line), &surface->notes));
+  LACERTA_RETURN_IF_ERROR(CheckKeyword(TakeKeyword(&line), &surface->notes));
   std::string_view rest = line;
   const std::string_view next = TakeWord(&rest);
   if (next == "BINARY") return Unsupported("binary OFF is not read; convert it to text");
@@ -96,7 +109,7 @@ Status ReadAll(TextScanner* scanner, const PositionRules& rules, FileSurface* su
   for (uint64_t f = 0; f < num_faces; ++f) {
     rules.Pass(f, scanner->rest().data());
     LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
-    LACERTA_RETURN_IF_ERROR(ReadFace(line, f, &corners, mesh));
+    LACERTA_RETURN_IF_ERROR(ReadFace(line, f, scanner, &corners, mesh));
   }
   return Status();
 }

@@ -295,11 +295,7 @@ std::string ReasonAgainstProgressive(const FamilyContext& context, size_t index,
   const Attribute* normal = source.primitive->Find("NORMAL");
   if (normal == nullptr) return "";
   if (normal->data.components != 3) return "its normals are not of type VEC3";
-  std::vector<Vec3f> normals;
-  for (uint64_t v = 0; v < source.primitive->num_vertices; ++v) {
-    normals.push_back({normal->data.Float(v, 0), normal->data.Float(v, 1), normal->data.Float(v, 2)});
-  }
-  *smooth = NormalsAreDerivable(Surface(*source.primitive), normals);
+  *smooth = NormalsAreDerivable(Surface(*source.primitive), VectorsOf(normal->data));
   return *smooth ? "" : "its normals hold creases that the surface alone does not tell";
 }
 

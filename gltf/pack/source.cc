@@ -5,6 +5,7 @@
 
 #include "document/buffer_edit.h"
 #include "document/lattice.h"
+#include "document/normals.h"
 #include "extension/progressive.h"
 #include "pack/repair.h"
 
@@ -35,6 +36,18 @@ void RoundAnew(Primitive* primitive) {
   }
 }
 
+// Takes NORMAL off where it says what its absence says: flat shading. Tangents, and normals that targets move, need it.
+void TakeOffFlatNormals(const GltfDocument& document, const Json& json, Source* source) {
+  Primitive& primitive = *source->primitive;
+  const Attribute* normal = primitive.Find("NORMAL");
+  const Json* material = FindElement(document.json, "materials", AsIndex(Find(json, "material")).value_or(~uint64_t{0}));
+  const bool has_map = material != nullptr && Find(*material, "normalTexture") != nullptr;
+  if (normal == nullptr || normal->data.components != 3 || has_map || primitive.Find("TANGENT") != nullptr || !source->targets.empty()) return;
+  if (NormalsAreFlat(Surface(primitive), primitive.triangles, VectorsOf(normal->data))) {
+    primitive.attributes.erase(primitive.attributes.begin() + (normal - primitive.attributes.data()));
+  }
+}
+
 Status ReadSource(const GltfDocument& document, const Json& json, Source* source) {
   source->reason = ReasonToKeep(json);
   if (!source->reason.empty()) return Status();
@@ -50,6 +63,7 @@ Status ReadSource(const GltfDocument& document, const Json& json, Source* source
   source->primitive = std::move(primitive).value();
   source->targets = std::move(targets).value();
   RoundAnew(&*source->primitive);
+  TakeOffFlatNormals(document, json, source);
   return Status();
 }
 

@@ -34,5 +34,47 @@ TEST(Normals, CreasesAreNotDerivable) {
   EXPECT_FALSE(NormalsAreDerivable(mesh, normals));
 }
 
+struct FlatSphere {
+  TriangleMesh mesh = Sphere();
+  std::vector<Triangle> corners;  // one row a face
+  std::vector<Vec3f> normals;
+
+  FlatSphere() {
+    for (const Triangle& t : mesh.triangles) {
+      const auto row = static_cast<uint32_t>(normals.size());
+      corners.push_back({row, row, row});
+      normals.push_back(Normalized(Cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]])));
+    }
+  }
+  bool IsFlat() const { return NormalsAreFlat(mesh, corners, normals); }
+};
+
+TEST(Normals, ThoseOfFacesAreFlat) {
+  FlatSphere sphere;
+  EXPECT_TRUE(sphere.IsFlat());
+  for (Vec3f& normal : sphere.normals) normal = Normalized(normal + Vec3f{0.01f, -0.01f, 0.01f});  // as by eight bits
+  EXPECT_TRUE(sphere.IsFlat());
+  sphere.corners[7] = {MeshAttribute::kNoValue, MeshAttribute::kNoValue, MeshAttribute::kNoValue};
+  sphere.mesh.triangles[8][1] = sphere.mesh.triangles[8][0];  // has no direction
+  EXPECT_TRUE(sphere.IsFlat());
+}
+
+TEST(Normals, OneFaceThatIsShadedSmoothIsEnough) {
+  FlatSphere sphere;
+  sphere.corners[5][1] = 6;
+  EXPECT_FALSE(sphere.IsFlat());
+  const TriangleMesh fine = testing::WavySphere(200, 400);  // where smooth and flat normals hardly differ
+  EXPECT_FALSE(NormalsAreFlat(fine, fine.triangles, fine.positions));
+}
+
+TEST(Normals, ThatTurnAwayFromTheirFacesAreNotFlat) {
+  FlatSphere sphere;
+  for (size_t f = 0; f < sphere.normals.size(); f += 200) sphere.normals[f] = {0, 0, 0};
+  for (size_t f = 1; f < sphere.normals.size(); f += 200) sphere.normals[f] = -sphere.normals[f];
+  EXPECT_TRUE(sphere.IsFlat());
+  for (size_t f = 2; f < sphere.normals.size(); f += 50) sphere.normals[f] = -sphere.normals[f];
+  EXPECT_FALSE(sphere.IsFlat());
+}
+
 }  // namespace
 }  // namespace lacerta

@@ -41,7 +41,7 @@ std::vector<float> At(const FileMesh& file, size_t attribute, size_t face, size_
   return {row, row + values.components};
 }
 
-const char kSquare[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 0.75\nvt 0 1\nvn 0 0 2\nvn 0 0 0\n";
+const char kSquare[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 0.75\nvt 0 1\nvn 0 2 0\nvn 0 0 0\n";
 
 TEST(FileMesh, ObjHasTextureCoordinatesFromAboveAndUnitNormals) {
   const FileMesh file = Obj(std::string(kSquare) + "f 1/1/1 2/2/1 3/3/1 4/4/2\nf -4/-4/-2 -3/-3/-1 -2/-2/-2\n");
@@ -51,9 +51,19 @@ TEST(FileMesh, ObjHasTextureCoordinatesFromAboveAndUnitNormals) {
   EXPECT_THAT(At(file, 0, 0, 2), ElementsAre(1, 0.25f));
   EXPECT_THAT(At(file, 0, 1, 2), ElementsAre(0, 0));
   EXPECT_THAT(At(file, 0, 2, 0), ElementsAre(0, 1));
-  EXPECT_THAT(At(file, 1, 0, 0), ElementsAre(0, 0, 1));
+  EXPECT_THAT(At(file, 1, 0, 0), ElementsAre(0, 1, 0));
   EXPECT_THAT(At(file, 1, 1, 2), ElementsAre(0, 0, 1));  // had no length: the surface's
   EXPECT_THAT(file.group_materials, ElementsAre(FileMesh::kNoMaterial));
+}
+
+TEST(FileMesh, NormalsOfFlatShadingAreLeftAside) {
+  const std::string solid = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 -1\nvn 0 -1 0\nvn 0.5774 0.5774 0.5774\n";
+  const FileMesh flat = Obj(solid + "f 1//1 3//1 2//1\nf 1//2 2//2 4//2\nf 2//3 3//3 4//3\n");
+  EXPECT_THAT(Names(flat), IsEmpty());
+  EXPECT_THAT(flat.notes, ElementsAre(HasSubstr("NORMAL is left aside")));
+  EXPECT_THAT(flat.mesh.groups, ElementsAre(0, 0, 0));
+  EXPECT_THAT(Names(Obj(solid + "f 1//1 3//1 2//1\nf 1//2 2//2 4//3\nf 2//3 3//3 4//3\n")), ElementsAre("NORMAL"));
+  EXPECT_THAT(Names(Obj(solid + "f 1//3 3//3 2//3\nf 1//2 2//2 4//2\nf 2//3 3//3 4//3\n")), ElementsAre("NORMAL"));
 }
 
 TEST(FileMesh, FacesWithoutAnAttributeAreAGroupOfTheirOwn) {
@@ -145,7 +155,7 @@ TEST(FileMesh, PlyHasWhatItsVerticesHave) {
       "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
       "property uchar alpha\nproperty float s\nproperty float t\n";
   const auto body = [](const std::string& alpha) {
-    const std::string rest = " 0 0 3 255 0 188 " + alpha + " 0.5 0.25\n";
+    const std::string rest = " 0 3 0 255 0 188 " + alpha + " 0.5 0.25\n";
     return "0 0 0" + rest + "1 0 0" + rest + "1 1 0" + rest + "0 1 0 0 0 3 0 0 0 " + alpha + " 0 0\n4 0 1 2 3\n";
   };
   const FileMesh opaque = Ply(PlyText(properties, "", body("255"))), clear = Ply(PlyText(properties, "", body("51")));
@@ -153,7 +163,7 @@ TEST(FileMesh, PlyHasWhatItsVerticesHave) {
     EXPECT_THAT(Names(*file), ElementsAre("TEXCOORD_0", "NORMAL", "COLOR_0"));
     EXPECT_TRUE(CheckAttributedMesh(file->mesh).ok());
     EXPECT_THAT(At(*file, 0, 1, 1), ElementsAre(0.5f, 0.75f));
-    EXPECT_THAT(At(*file, 1, 1, 1), ElementsAre(0, 0, 1));
+    EXPECT_THAT(At(*file, 1, 1, 1), ElementsAre(0, 1, 0));
   }
   EXPECT_THAT(At(opaque, 2, 1, 1), ElementsAre(1, 0, FloatNear(0.50289f, 1e-5f)));
   EXPECT_THAT(At(clear, 2, 1, 1), ElementsAre(1, 0, FloatNear(0.50289f, 1e-5f), FloatNear(0.2f, 1e-6f)));

@@ -19,7 +19,8 @@ const char kFile[] =
 
 TEST(OffReader, ReadsEveryVariant) {
   for (const char* text :
-       {kFile, "OFF 4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n3 0 2 3",
+       {kFile, "OFF4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n3 0 2 3", "OFF 4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 \n2\n3 \n3 0 2 3 9 9 9\n",
+        "OFF 4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n3 0 2 3",
         "COFF\n4 2 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 1 1 1 1\n0 1 0 1 1 1 1\n4 0 1 2 3\n3 0 2 3\n",
         "NOFF\r\n4 2\r\n0 0 0 0 0 1\r\n1 0 0 0 0 1\r\n1 1 0 0 0 1\r\n0 1 0 0 0 1\r\n4 0 1 2 3\r\n3 0 2 3\r\n",
         "STCNOFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n3 0 2 3\n"}) {
@@ -49,6 +50,7 @@ TEST(OffReader, NamesWhatIsWrong) {
   EXPECT_THAT(MessageOf("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n1 0\n0 0 0 0\n"), HasSubstr("1 corners"));
   EXPECT_THAT(MessageOf("OFF\n-3 1 0\n"), HasSubstr("\"-3\""));
   EXPECT_THAT(MessageOf("OFF BINARY\n"), HasSubstr("binary OFF"));
+  EXPECT_THAT(MessageOf("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1\n3 2 1 0 0 0\n"), HasSubstr("ends too early"));
   EXPECT_THAT(MessageOf("4OFF\n1 1 0\n"), HasSubstr("4OFF"));
   EXPECT_THAT(MessageOf("FOO\n"), HasSubstr("no OFF file"));
 }

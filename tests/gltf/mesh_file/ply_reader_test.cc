@@ -170,6 +170,7 @@ TEST(PlyReader, NamesWhatIsWrong) {
   EXPECT_THAT(MessageOf(Header("ascii", "4", "0") + kBody), HasSubstr("no faces"));
   EXPECT_THAT(MessageOf("ply\nformat ascii 2.0\nend_header\n"), HasSubstr("2.0"));
   EXPECT_THAT(MessageOf("ply\nformat morse 1.0\nend_header\n"), HasSubstr("morse"));
+  EXPECT_THAT(MessageOf("ply\nformat ascii 1.0\nCreated by hand\nelement vertex 3\nproprety float x\nend_header\n"), AllOf(HasSubstr("line 5"), HasSubstr("\"proprety\"")));
   EXPECT_THAT(MessageOf("plyx\n"), HasSubstr("no PLY file"));
   EXPECT_THAT(MessageOf(Header("ascii", "4", "2", "quad") + kBody), HasSubstr("quad"));
 }

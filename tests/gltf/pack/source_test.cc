@@ -60,6 +60,63 @@ TEST(Source, ReadsSparseAndQuantizedAccessors) {
   EXPECT_EQ(sources[0].targets[0][0].data.bytes, MakeFloatAccessor(offsets).bytes);
 }
 
+// A ball of triangles that share no vertices, each with its normal at all three corners.
+Json FlatBall(AssetBuilder* builder) {
+  const TriangleMesh ball = WavySphere(6, 8);
+  TriangleMesh soup;
+  std::vector<Vec3f> normals;
+  for (const Triangle& t : ball.triangles) {
+    const auto first = static_cast<uint32_t>(soup.positions.size());
+    soup.triangles.push_back({first, first + 1, first + 2});
+    const Vec3f &a = ball.positions[t[0]], &b = ball.positions[t[1]], &c = ball.positions[t[2]];
+    soup.positions.insert(soup.positions.end(), {a, b, c});
+    normals.insert(normals.end(), 3, Normalized(Cross(b - a, c - a)));
+  }
+  Json primitive = builder->Primitive(soup);
+  primitive["attributes"]["NORMAL"] = builder->AddFloats(normals, false);
+  return primitive;
+}
+
+bool HasNormals(AssetBuilder* builder, Json primitive) {
+  builder->AddMesh("a", Json::array({std::move(primitive)}));
+  const std::vector<Source> sources = ReadSources(builder->document()).value();
+  return sources.back().primitive->Find("NORMAL") != nullptr;
+}
+
+TEST(Source, NormalsOfFlatShadingAreTakenOff) {
+  AssetBuilder builder;
+  EXPECT_FALSE(HasNormals(&builder, FlatBall(&builder)));
+}
+
+TEST(Source, NormalsThatSomethingNeedsStay) {
+  {
+    AssetBuilder builder;
+    Json smooth = builder.Primitive(WavySphere(6, 8));
+    smooth["attributes"]["NORMAL"] = builder.AddFloats(WavySphere(6, 8).positions, false);
+    EXPECT_TRUE(HasNormals(&builder, std::move(smooth)));
+  }
+  {
+    AssetBuilder builder;
+    Json mapped = FlatBall(&builder);
+    builder.document().json["materials"][0]["normalTexture"] = {{"index", 0}};
+    EXPECT_TRUE(HasNormals(&builder, std::move(mapped)));
+  }
+  {
+    AssetBuilder builder;
+    Json moved = FlatBall(&builder);
+    moved["targets"] = Json::array({{{"POSITION", moved["attributes"]["POSITION"]}}});
+    EXPECT_TRUE(HasNormals(&builder, std::move(moved)));
+  }
+  {
+    AssetBuilder builder;
+    Json tangents = FlatBall(&builder);
+    const uint64_t count = 3 * WavySphere(6, 8).triangles.size();
+    const AccessorData data = MakeFloatAccessor(std::vector<float>(4 * count, 1.0f), 4);
+    tangents["attributes"]["TANGENT"] = AddAccessor(MakeAccessor(data, AccessorUse::kAttribute, false, &builder.document()), &builder.document());
+    EXPECT_TRUE(HasNormals(&builder, std::move(tangents)));
+  }
+}
+
 TEST(Source, NamesWhatIsWrongWithATarget) {
   AssetBuilder builder;
   Json primitive = builder.Primitive(WavySphere(6, 8));
