@@ -66,13 +66,14 @@ class LatticeDescent {
     const LatticePoint current = lattice_[v];
     const int current_turned = NumTurned(v);
     LatticePoint best = current;
-    double best_cost = Cost(v, slope, best) + CostOfTurned(current_turned);
+    double best_cost = Cost(v, slope, best, std::numeric_limits<double>::infinity()) + CostOfTurned(current_turned);
     const Vec3d exact = (Vec3Cast<double>(mesh_.positions[v]) + optimum - origin_) * (1 / rate_.step);
     for (const LatticePoint& center : {current, NearestPoint(exact)}) {
       for (int i = 0; i < 27; ++i) {
         const LatticePoint p{center[0] + i % 3 - 1, center[1] + i / 3 % 3 - 1, center[2] + i / 9 - 1};
         if (SquaredNorm(MoveTo(v, p)) > kFarthest * kFarthest * rate_.step * rate_.step) continue;
-        double cost = Cost(v, slope, p);
+        double cost = Cost(v, slope, p, best_cost);
+        if (cost >= best_cost) continue;
         if (current_turned > 0) {  // by rounding: then what is best may turn it back, and must not turn more
           moves_[v] = MoveTo(v, p);
           const int turned = NumTurned(v);
@@ -113,16 +114,19 @@ class LatticeDescent {
     }
   }
 
-  double Cost(uint32_t v, const Vec3d& slope, const LatticePoint& p) const {
+  // The cost of v at p, or a part of it that comes to `enough` already.
+  double Cost(uint32_t v, const Vec3d& slope, const LatticePoint& p, double enough) const {
     const Vec3d move = MoveTo(v, p);
-    double cost = 2 * Dot(slope, move) + Dot(move, model_.diagonal[v] * move);
-    double bits = 0;
+    const double distortion = 2 * Dot(slope, move) + Dot(move, model_.diagonal[v] * move);
+    double cost = distortion, bits = 0;
     for (const LatticePoint& others : flap_errors_) {
+      if (cost >= enough) break;
       double r2 = 0;
       for (size_t c = 0; c < 3; ++c) r2 += static_cast<double>(p[c] + others[c]) * static_cast<double>(p[c] + others[c]);
       bits += rate_.BitsOfFlap(r2 * rate_.step * rate_.step);
+      cost = distortion + rate_.distortion_per_bit * bits;
     }
-    return cost + rate_.distortion_per_bit * bits;
+    return cost;
   }
 
   Vec3d Moved(uint32_t v) const { return Vec3Cast<double>(mesh_.positions[v]) + moves_[v]; }
