@@ -197,10 +197,12 @@ AccessorData MakeFloatAccessor(const std::vector<Vec3f>& values) {
   return MakeFloatAccessor(components, 3);
 }
 
+Vec3f VectorAt(const AccessorData& data, uint64_t element) { return {data.Float(element, 0), data.Float(element, 1), data.Float(element, 2)}; }
+
 std::vector<Vec3f> VectorsOf(const AccessorData& data) {
   std::vector<Vec3f> vectors;
   vectors.reserve(static_cast<size_t>(data.count));
-  for (uint64_t i = 0; i < data.count; ++i) vectors.push_back({data.Float(i, 0), data.Float(i, 1), data.Float(i, 2)});
+  for (uint64_t i = 0; i < data.count; ++i) vectors.push_back(VectorAt(data, i));
   return vectors;
 }
 

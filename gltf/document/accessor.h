@@ -40,7 +40,8 @@ AccessorData MakeFloatAccessor(const std::vector<Vec3f>& values);
 // 16 bits where `num_vertices` allows it, else 32.
 AccessorData MakeIndexAccessor(const std::vector<Triangle>& triangles, uint64_t num_vertices);
 
-// Of VEC3 or VEC4, the first three components of each.
+// The first three components of an element, or of all of them, of VEC3 or VEC4.
+Vec3f VectorAt(const AccessorData& data, uint64_t element);
 std::vector<Vec3f> VectorsOf(const AccessorData& data);
 
 struct ComponentRange {

@@ -32,7 +32,7 @@ TriangleMesh Morphed(const std::vector<MorphedPrimitive>& primitives, const Targ
     for (size_t t = 0; t < std::min(mix.size(), one.targets->size()); ++t) {
       const Attribute* offsets = mix[t] == 0.0f ? nullptr : PositionOf((*one.targets)[t]);
       for (uint32_t v = 0; offsets != nullptr && v < surface.positions.size(); ++v) {
-        surface.positions[v] += Vec3f{offsets->data.Float(v, 0), offsets->data.Float(v, 1), offsets->data.Float(v, 2)} * mix[t];
+        surface.positions[v] += VectorAt(offsets->data, v) * mix[t];
       }
     }
     all = Together(std::move(all), surface);
@@ -73,7 +73,7 @@ std::vector<MorphTarget> TakeTargets(const std::vector<MorphTarget>& like, doubl
       if (found == nullptr) continue;
       AccessorData data = found->data;
       for (uint64_t v = 0; v < data.count && attribute.name == "POSITION"; ++v) {
-        const double length = std::hypot(data.Float(v, 0), data.Float(v, 1), data.Float(v, 2));
+        const double length = Norm(Vec3Cast<double>(VectorAt(data, v)));
         if (length <= nothing)
           std::fill_n(data.bytes.begin() + static_cast<std::ptrdiff_t>(v * 3 * sizeof(float)), 3 * sizeof(float),
                       uint8_t{0});

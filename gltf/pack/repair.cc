@@ -151,7 +151,7 @@ void MakeTangents(const Primitive& primitive, const std::vector<uint8_t>& known,
   const Attribute* normals = primitive.Find("NORMAL");
   for (uint64_t v = 0; v < tangents->count; ++v) {
     if (known[static_cast<size_t>(v)] != 0) continue;
-    Vec3d tangent = {tangents->Float(v, 0), tangents->Float(v, 1), tangents->Float(v, 2)};
+    Vec3d tangent = Vec3Cast<double>(VectorAt(*tangents, v));
     if (!(Norm(tangent) > 0)) {
       const bool along_x = normals != nullptr && std::abs(normals->data.Float(v, 0)) > 0.9f;
       tangent = along_x ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
