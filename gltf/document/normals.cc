@@ -21,15 +21,16 @@ bool NormalsAreDerivable(const TriangleMesh& mesh, const std::vector<Vec3f>& nor
   return num_off * 100 <= num_used;
 }
 
-bool NormalsAreFlat(const TriangleMesh& mesh, const std::vector<Triangle>& corners, const std::vector<Vec3f>& normals) {
+bool NormalsAreFlat(const TriangleMesh& mesh, const std::vector<Triangle>& corners, const std::function<Vec3f(uint32_t)>& normal_at) {
   constexpr double kLeastCosine = 0.9994;  // 2 degrees
   size_t num_off = 0;
   for (size_t f = 0; f < corners.size(); ++f) {
     const auto [a, b, c] = corners[f];
     if (a == MeshAttribute::kNoValue) continue;
-    if (normals[a] != normals[b] || normals[a] != normals[c]) return false;
+    const Vec3f given = normal_at(a);
+    if (normal_at(b) != given || normal_at(c) != given) return false;
     const auto at = [&](int k) { return Vec3Cast<double>(mesh.positions[mesh.triangles[f][k]]); };
-    const Vec3d area = Cross(at(1) - at(0), at(2) - at(0)), normal = Vec3Cast<double>(normals[a]);
+    const Vec3d area = Cross(at(1) - at(0), at(2) - at(0)), normal = Vec3Cast<double>(given);
     const double length = Norm(area) * Norm(normal);
     if (length > 0 && !(Dot(area, normal) >= kLeastCosine * length)) ++num_off;
   }

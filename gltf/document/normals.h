@@ -2,6 +2,8 @@
 #ifndef LACERTA_DOCUMENT_NORMALS_H_
 #define LACERTA_DOCUMENT_NORMALS_H_
 
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "lacerta/attributed_mesh.h"
@@ -15,8 +17,9 @@ bool NormalsAreDerivable(const TriangleMesh& mesh, const std::vector<Vec3f>& nor
 
 // Whether every face has one normal at its three corners and, but for one face in a hundred (slivers), its own within 2 degrees: what glTF 2.0 shades a
 // surface without normals by ("flat normals", 3.7.2.1).
-//   corners  #F rows of `normals`; MeshAttribute::kNoValue x 3 for a face without
-bool NormalsAreFlat(const TriangleMesh& mesh, const std::vector<Triangle>& corners, const std::vector<Vec3f>& normals);
+//   corners    #F rows of normals; MeshAttribute::kNoValue x 3 for a face without
+//   normal_at  of a row
+bool NormalsAreFlat(const TriangleMesh& mesh, const std::vector<Triangle>& corners, const std::function<Vec3f(uint32_t)>& normal_at);
 
 }  // namespace lacerta
 

@@ -157,9 +157,7 @@ void TakeOffFlatNormals(FileMesh* file) {
   const auto found = std::find_if(attributes.begin(), attributes.end(), [](const MeshAttribute& a) { return a.kind == AttributeKind::kNormal; });
   const bool has_maps = std::any_of(file->materials.begin(), file->materials.end(), [](const FileMaterial& m) { return m.normal_image.has_value(); });
   if (found == attributes.end() || has_maps) return;
-  std::vector<Vec3f> normals;
-  for (uint32_t row = 0; row < found->num_values(); ++row) normals.push_back(NormalAt(*found, row));
-  if (!NormalsAreFlat(file->mesh.surface, found->corners, normals)) return;
+  if (!NormalsAreFlat(file->mesh.surface, found->corners, [&](uint32_t row) { return NormalAt(*found, row); })) return;
   file->notes.emplace_back("NORMAL is left aside: it has the normals of the faces, which glTF shades by where there are none");
   attributes.erase(found);
 }

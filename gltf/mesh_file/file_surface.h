@@ -44,7 +44,8 @@ struct FileSurface {
 Status RemoveNotFinite(FileSurface* surface);
 
 // Leaves aside, with a note, what has rows that are not there or not finite; makes normals unit vectors, those without length what the
-// surface tells; makes colors linear; takes off what is the same everywhere and, with a note, normals of flat shading; sorts faces into groups. `materials`: of surface.material_names.
+// surface tells; makes colors linear; takes off what is the same everywhere and, with a note, normals of flat shading; sorts faces into groups.
+// `materials`: of surface.material_names.
 FileMesh ToFileMesh(FileSurface surface, std::vector<FileMaterial> materials, std::vector<FileImage> images);
 
 }  // namespace lacerta

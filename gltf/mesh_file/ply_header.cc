@@ -132,7 +132,8 @@ StatusOr<PlyHeader> ParsePlyHeader(Span<const uint8_t> bytes) {
       status = ParseProperty(line, &header);
     } else if (keyword == "comment") {
       if (TakeWord(&line) == "TextureFile") header.textures.push_back(RestOfLine(line));
-    } else if (keyword != "obj_info" && !keyword.empty() && !header.elements.empty()) {  // before them old Blenders say who wrote the file, without "comment"
+    } else if (keyword != "obj_info" && !keyword.empty() && !header.elements.empty()) {
+      // Before them old Blenders say who wrote the file, without "comment".
       status = InvalidData("unknown header keyword \"" + std::string(keyword.substr(0, 40)) + "\"");
     }
     if (!status.ok()) return status.WithContext(scanner.LineName());

@@ -46,7 +46,9 @@ struct FlatSphere {
       normals.push_back(Normalized(Cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]])));
     }
   }
-  bool IsFlat() const { return NormalsAreFlat(mesh, corners, normals); }
+  bool IsFlat() const {
+    return NormalsAreFlat(mesh, corners, [this](uint32_t row) { return normals[row]; });
+  }
 };
 
 TEST(Normals, ThoseOfFacesAreFlat) {
@@ -64,7 +66,7 @@ TEST(Normals, OneFaceThatIsShadedSmoothIsEnough) {
   sphere.corners[5][1] = 6;
   EXPECT_FALSE(sphere.IsFlat());
   const TriangleMesh fine = testing::WavySphere(200, 400);  // where smooth and flat normals hardly differ
-  EXPECT_FALSE(NormalsAreFlat(fine, fine.triangles, fine.positions));
+  EXPECT_FALSE(NormalsAreFlat(fine, fine.triangles, [&](uint32_t v) { return fine.positions[v]; }));
 }
 
 TEST(Normals, ThatTurnAwayFromTheirFacesAreNotFlat) {
