@@ -44,8 +44,7 @@ std::vector<Vec3f> FrameNormals(const Topology& coarse, Span<const Vec3f> positi
   return normals;
 }
 
-LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints,
-                        uint32_t edge) {
+Vec3f FrameNormalAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> midpoints, uint32_t edge) {
   Vec3f area;
   for (const uint32_t face : coarse.edge_faces[edge]) {
     if (face == kNone) continue;
@@ -53,7 +52,7 @@ LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions, Spa
     const int k = EdgeCorner(coarse, face, edge);
     area += split.InMiddle() + split.AtCorner((k + 1) % 3) + split.AtCorner((k + 2) % 3);
   }
-  return FrameWithNormal(coarse, positions, edge, NormalOf(area));
+  return NormalOf(area);
 }
 
 std::vector<LocalFrame> ComputeLocalFrames(const Topology& coarse, const std::vector<Vec3f>& positions,

@@ -35,19 +35,18 @@ struct SplitFace {
   std::array<Vec3f, 3> corners, middle;
 };
 
-// Frame of the midpoint of one edge of `coarse`.
-//   normal    of the predicted fine mesh at the midpoint: the normalized sum of the area vectors of its fine triangles
-//   tangent1  direction of the edge (second end minus first), made orthogonal to the normal
-//   tangent2  normal x tangent1
+// The normal of the frame of the midpoint of one edge of `coarse`: of the predicted fine mesh there, the normalized sum of the area vectors of its fine
+// triangles.
 // positions: #V of the coarse level or more; predicted_midpoints: #E from PredictMidpoints. Where the surface degenerates to a
-// line or point the axes x, y, z stand in, so that a frame is always orthonormal.
-LocalFrame LocalFrameAt(const Topology& coarse, Span<const Vec3f> positions,
-                        Span<const Vec3f> predicted_midpoints, uint32_t edge);
+// line or point the axes x, y, z stand in, here and below, so that a frame is always orthonormal.
+Vec3f FrameNormalAt(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> predicted_midpoints, uint32_t edge);
 
-// Normals of the frames of all edges: #E; the same bit by bit.
+// The same of all edges, bit by bit: #E.
 std::vector<Vec3f> FrameNormals(const Topology& coarse, Span<const Vec3f> positions, Span<const Vec3f> predicted_midpoints);
 
-// The frame with that normal of the midpoint of one edge.
+// The frame with that normal.
+//   tangent1  direction of the edge (second end minus first), made orthogonal to the normal
+//   tangent2  normal x tangent1
 LocalFrame FrameWithNormal(const Topology& coarse, Span<const Vec3f> positions, uint32_t edge, const Vec3f& normal);
 
 // Frames of all edges: #E.

@@ -28,8 +28,8 @@ std::vector<Vec3f> Details(const Topology& coarse, const LevelSteps& steps, cons
   std::vector<Vec3f> details(edges.size());
   for (size_t i = 0; i < edges.size(); ++i) {
     const uint32_t e = edges[i];
-    const LocalFrame frame = frame_normals.empty() ? LocalFrameAt(coarse, positions, midpoints, e) : FrameWithNormal(coarse, positions, e, frame_normals[e]);
-    details[i] = frame.ToWorld(LocalDetail(steps, quantized, e));
+    const Vec3f normal = frame_normals.empty() ? FrameNormalAt(coarse, positions, midpoints, e) : frame_normals[e];
+    details[i] = FrameWithNormal(coarse, positions, e, normal).ToWorld(LocalDetail(steps, quantized, e));
   }
   return details;
 }

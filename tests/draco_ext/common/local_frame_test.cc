@@ -50,7 +50,7 @@ TEST(LocalFrameTest, OneAtATimeIsTheSameAsAll) {
     const std::vector<Vec3f> midpoints = PredictMidpoints(t, StencilTable(t), mesh.positions);
     const std::vector<LocalFrame> frames = ComputeLocalFrames(t, mesh.positions, midpoints);
     for (uint32_t e = 0; e < t.num_edges(); ++e) {
-      const LocalFrame frame = LocalFrameAt(t, mesh.positions, midpoints, e);
+      const LocalFrame frame = FrameWithNormal(t, mesh.positions, e, FrameNormalAt(t, mesh.positions, midpoints, e));
       EXPECT_EQ(frame.normal, frames[e].normal);  // to the last bit
       EXPECT_EQ(frame.tangent1, frames[e].tangent1);
       EXPECT_EQ(frame.tangent2, frames[e].tangent2);
