@@ -21,7 +21,8 @@ bool NormalsAreDerivable(const TriangleMesh& mesh, const std::vector<Vec3f>& nor
   return num_off * 100 <= num_used;
 }
 
-bool NormalsAreFlat(const TriangleMesh& mesh, const std::vector<Triangle>& corners, const std::function<Vec3f(uint32_t)>& normal_at) {
+bool NormalsAreFlat(const std::vector<Triangle>& triangles, const std::function<Vec3f(uint32_t)>& position_at, const std::vector<Triangle>& corners,
+                    const std::function<Vec3f(uint32_t)>& normal_at) {
   constexpr double kLeastCosine = 0.9994;  // 2 degrees
   size_t num_off = 0;
   for (size_t f = 0; f < corners.size(); ++f) {
@@ -29,7 +30,7 @@ bool NormalsAreFlat(const TriangleMesh& mesh, const std::vector<Triangle>& corne
     if (a == MeshAttribute::kNoValue) continue;
     const Vec3f given = normal_at(a);
     if (normal_at(b) != given || normal_at(c) != given) return false;
-    const auto at = [&](int k) { return Vec3Cast<double>(mesh.positions[mesh.triangles[f][k]]); };
+    const auto at = [&](int k) { return Vec3Cast<double>(position_at(triangles[f][k])); };
     const Vec3d area = Cross(at(1) - at(0), at(2) - at(0)), normal = Vec3Cast<double>(given);
     const double length = Norm(area) * Norm(normal);
     if (length > 0 && !(Dot(area, normal) >= kLeastCosine * length)) ++num_off;

@@ -17,9 +17,10 @@ bool NormalsAreDerivable(const TriangleMesh& mesh, const std::vector<Vec3f>& nor
 
 // Whether every face has one normal at its three corners and, but for one face in a hundred (slivers), its own within 2 degrees: what glTF 2.0 shades a
 // surface without normals by ("flat normals", 3.7.2.1).
-//   corners    #F rows of normals; MeshAttribute::kNoValue x 3 for a face without
-//   normal_at  of a row
-bool NormalsAreFlat(const TriangleMesh& mesh, const std::vector<Triangle>& corners, const std::function<Vec3f(uint32_t)>& normal_at);
+//   triangles    of the surface, #F; position_at: of its vertices
+//   corners      #F rows of normals; MeshAttribute::kNoValue x 3 for a face without; normal_at: of rows
+bool NormalsAreFlat(const std::vector<Triangle>& triangles, const std::function<Vec3f(uint32_t)>& position_at, const std::vector<Triangle>& corners,
+                    const std::function<Vec3f(uint32_t)>& normal_at);
 
 }  // namespace lacerta
 

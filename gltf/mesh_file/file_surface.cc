@@ -157,7 +157,9 @@ void TakeOffFlatNormals(FileMesh* file) {
   const auto found = std::find_if(attributes.begin(), attributes.end(), [](const MeshAttribute& a) { return a.kind == AttributeKind::kNormal; });
   const bool has_maps = std::any_of(file->materials.begin(), file->materials.end(), [](const FileMaterial& m) { return m.normal_image.has_value(); });
   if (found == attributes.end() || has_maps) return;
-  if (!NormalsAreFlat(file->mesh.surface, found->corners, [&](uint32_t row) { return NormalAt(*found, row); })) return;
+  const TriangleMesh& surface = file->mesh.surface;
+  const auto position_at = [&](uint32_t v) { return surface.positions[v]; };
+  if (!NormalsAreFlat(surface.triangles, position_at, found->corners, [&](uint32_t row) { return NormalAt(*found, row); })) return;
   file->notes.emplace_back("NORMAL is left aside: it has the normals of the faces, which glTF shades by where there are none");
   attributes.erase(found);
 }

@@ -21,7 +21,7 @@ double MeanSquare(const Value& a, const Value& b, const Value& c) {
 
 Value ValueAt(const AccessorData& data, uint64_t i, bool direction) {
   if (direction) {
-    const Vec3d unit = Normalized(Vec3d{data.Float(i, 0), data.Float(i, 1), data.Float(i, 2)});
+    const Vec3d unit = Normalized(Vec3Cast<double>(VectorAt(data, i)));
     return {unit.x, unit.y, unit.z, 0.0};
   }
   Value value = {};

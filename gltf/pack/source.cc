@@ -43,7 +43,8 @@ void TakeOffFlatNormals(const GltfDocument& document, const Json& json, Source* 
   const Json* material = FindElement(document.json, "materials", AsIndex(Find(json, "material")).value_or(~uint64_t{0}));
   const bool has_map = material != nullptr && Find(*material, "normalTexture") != nullptr;
   if (normal == nullptr || normal->data.components != 3 || has_map || primitive.Find("TANGENT") != nullptr || !source->targets.empty()) return;
-  if (NormalsAreFlat(Surface(primitive), primitive.triangles, [&](uint32_t v) { return VectorAt(normal->data, v); })) {
+  const auto position_at = [&](uint32_t v) { return VectorAt(primitive.attributes[0].data, v); };
+  if (NormalsAreFlat(primitive.triangles, position_at, primitive.triangles, [&](uint32_t v) { return VectorAt(normal->data, v); })) {
     primitive.attributes.erase(primitive.attributes.begin() + (normal - primitive.attributes.data()));
   }
 }

@@ -111,9 +111,9 @@ struct PackResult {
 // becomes progressive; so do surfaces with attributes, all primitives that touch in one stream, where that is smaller (or
 // levels are always wanted). Other triangles are stored as KHR_draco_mesh_compression, and what neither can hold stays as
 // it was, each with its reason in the report. Normals of flat shading go from what is stored anew: their absence means the same. All else
-// in the asset passes through: nodes, materials, images byte for byte, animations, skins, extras, unknown extensions. Fails with kInvalidData, naming mesh, primitive, accessor and
-// index; kUnsupported for compressions and versions that it does not know; kInvalidArgument for options that do not go
-// together; kLimitExceeded where memory runs out.
+// in the asset passes through: nodes, materials, images byte for byte, animations, skins, extras, unknown extensions. Fails with
+// kInvalidData, naming mesh, primitive, accessor and index; kUnsupported for compressions and versions that it does not know;
+// kInvalidArgument for options that do not go together; kLimitExceeded where memory runs out.
 StatusOr<PackResult> PackGltf(Span<const uint8_t> asset, const PackOptions& options);
 
 // Packs one mesh as an asset of its own. `name` may be empty. Fails like EncodeMesh.

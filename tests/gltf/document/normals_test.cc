@@ -47,7 +47,7 @@ struct FlatSphere {
     }
   }
   bool IsFlat() const {
-    return NormalsAreFlat(mesh, corners, [this](uint32_t row) { return normals[row]; });
+    return NormalsAreFlat(mesh.triangles, [this](uint32_t v) { return mesh.positions[v]; }, corners, [this](uint32_t row) { return normals[row]; });
   }
 };
 
@@ -66,7 +66,8 @@ TEST(Normals, OneFaceThatIsShadedSmoothIsEnough) {
   sphere.corners[5][1] = 6;
   EXPECT_FALSE(sphere.IsFlat());
   const TriangleMesh fine = testing::WavySphere(200, 400);  // where smooth and flat normals hardly differ
-  EXPECT_FALSE(NormalsAreFlat(fine, fine.triangles, [&](uint32_t v) { return fine.positions[v]; }));
+  const auto position_at = [&](uint32_t v) { return fine.positions[v]; };
+  EXPECT_FALSE(NormalsAreFlat(fine.triangles, position_at, fine.triangles, position_at));
 }
 
 TEST(Normals, ThatTurnAwayFromTheirFacesAreNotFlat) {
