@@ -184,7 +184,6 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::TryNearGoal(int passes) {
 // The law of the steps holds for surfaces on the whole; what suits this one is found by trying, one choice after the other, around the
 // slope that the target is thought to need.
 void CandidateSearch::SuitSteps() {
-  steps_.last_detailed = candidate_.LastDetailed(std::exp(start_.log_lambda));
   double least = std::numeric_limits<double>::infinity();
   const auto improves = [&](const StepChoice& choice) {
     if (choice.last_detailed < 1 || choice.last_detailed > candidate_.num_levels()) return false;
@@ -249,6 +248,7 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::Settle(const std::optional<C
 }
 
 StatusOr<MeasuredStream> CandidateSearch::Meet() {
+  steps_.last_detailed = candidate_.LastDetailed(std::exp(start_.log_lambda));
   if (effort_.suit_passes > 0 && mode_ != EncodeMode::kPaper) SuitSteps();
   values_.clear();  // those of fewer passes
   LACERTA_ASSIGN_OR_RETURN(Attempt drawn, Draw());

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "draco/base_shape.h"
+#include "draco/simplifications.h"
 #include "draco/crowded_input.h"
 #include "draco/custom_form.h"
 #include "draco/decoded_distance.h"
@@ -187,14 +187,8 @@ StatusOr<ChosenStream> CodeRemeshed(ProxiedInput* input, const SurfaceDistanceMe
   const SearchEffort effort = EffortOf(options.effort);
   std::vector<CollapseHistory> histories;
   ForEachBranch(2, [&](size_t branch) {
-    const double lambda = UsualLambda(psnr, meter.diagonal());
-    if (branch == 1) {
-      if (options.levels == LevelChoice::kWhereTheyPay) simpler->emplace(mesh, input->Sequence(), meter, target, effort);
-    } else if (effort.every_shape) {
-      histories = ShapedHistories(surface, parts.topology);
-    } else {
-      histories.push_back(BestShapedHistory(surface, parts.topology, TypicalBase(psnr), lambda, options.mode, effort.shape_sizes));
-    }
+    if (branch == 0) histories = Simplifications(surface, parts.topology, effort.simplifications);
+    if (branch == 1 && options.levels == LevelChoice::kWhereTheyPay) simpler->emplace(mesh, input->Sequence(), meter, target, effort);
   });
   const StillPart still = PrepareStillPart(parts.still, parts.refined, distance);
   *report = {parts.refined_components,       parts.still_components, still.hidden_components,
@@ -206,16 +200,9 @@ StatusOr<ChosenStream> CodeRemeshed(ProxiedInput* input, const SurfaceDistanceMe
     *is_simpler = takes_fewer.ok() && takes_fewer.value();
     return *is_simpler;
   };
-  StatusOr<ChosenStream> best = InternalError("no simplification was tried");
-  for (size_t h = 0; h < histories.size(); ++h) {
-    const auto progress = [&](double share, const char* what) {
-      if (options.progress) options.progress((static_cast<double>(h) + share) / static_cast<double>(histories.size()), what);
-    };
-    StatusOr<ChosenStream> chosen = CodeAtTarget({surface, histories[h], still.mesh}, meter, target, options.mode, progress, effort, is_outdone);
-    const bool is_better = !best.ok() || (chosen.ok() && IsBetter(OutcomeOf(chosen.value().measured), OutcomeOf(best.value().measured), target));
-    if (is_better) best = std::move(chosen);
-  }
-  return best;
+  std::vector<RefinableSurface> simplifications;
+  for (const CollapseHistory& history : histories) simplifications.push_back({surface, history, still.mesh});
+  return CodeAtTarget(simplifications, meter, target, options.mode, options.progress, effort, is_outdone);
 }
 
 // The surface at the target on its own connectivity, remeshed, or as a simplified mesh without levels, whichever is better. crowding: of

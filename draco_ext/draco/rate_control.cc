@@ -9,7 +9,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -19,22 +21,36 @@
 namespace lacerta {
 namespace {
 
-// Base sizes tried: a ladder, walked from where streams of that quality have their base on typical surfaces.
-constexpr double kFirstRung = 48;
+// Base sizes tried: the rungs of a ladder, walked in strides from where streams of that quality have their base on typical surfaces.
+constexpr double kFirstRung = 48 / (1.5 * 1.5 * 1.5), kStrideRatio = 1.5;
+constexpr int kStride = 2;  // rungs
+constexpr double kUsualSize = 48;  // that every surface may have and where none begins below: streams on smaller bases may leap over their target
 
-// A base size that was tried.
-struct Rung {
+// A base mesh: the one that a simplification of the surface has at a rung of the ladder.
+struct BaseChoice {
+  size_t simplification = 0;
+  int rung = 0;
+
+  bool operator<(const BaseChoice& other) const { return std::tie(simplification, rung) < std::tie(other.simplification, other.rung); }
+  BaseChoice At(int other_rung) const { return {simplification, other_rung}; }
+};
+
+// A base that was tried.
+struct TriedBase {
   std::optional<FittedRemesh> remesh;              // until there is the candidate
   std::unique_ptr<NormalMeshCandidate> candidate;  // null once it was let go of
   std::unique_ptr<CandidateSearch> search;
   Status status;  // why there is no candidate, if so
   double remesh_psnr = 0;
+  bool may_grow = false;  // as of FittedRemesh
   double score = std::numeric_limits<double>::infinity();  // of CandidateSearch::Score; infinite: cannot reach the target
   SearchStart start;                                       // of CandidateSearch::start, where there is a score
 };
 
 // Candidates that are taken to the target in all. No more are kept than are taken at a time: each is as large as the input.
 constexpr size_t kMost = 4;
+// dB: a remesh that is nearer to the target than that costs bytes and gets one level more: before it is taken to the target, and to be scored.
+constexpr double kComfort = 12, kLittleComfort = 6;
 // What the bytes of the stream in the end are at least: against those of the best score so far, or of all, and for a vertex of the base.
 constexpr double kLeastShare = 0.45, kLeastShareAtEnd = 0.85, kFewestBytesPerVertex = 1.0;
 // What a PSNR costs, about: ln(bytes) per dB.
@@ -42,177 +58,257 @@ constexpr double kLogBytesPerDecibel = 0.11;
 
 class Ladder {
  public:
-  Ladder(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode, const SearchEffort& effort)
-      : surface_(surface), meter_(meter), target_(target), mode_(mode), effort_(effort) {
-    num_input_ = static_cast<double>(surface.surface.mesh().positions.size());
-    constexpr double kLargestBase = 0.5;  // of the input's vertices
-    first_ = RungOfSize(num_input_ - static_cast<double>(surface.history.num_collapses()));
-    last_ = std::max(first_, RungOfSize(std::max(kFirstRung, kLargestBase * num_input_)));
+  Ladder(const std::vector<RefinableSurface>& simplifications, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
+         const SearchEffort& effort)
+      : simplifications_(simplifications), meter_(meter), target_(target), mode_(mode), effort_(effort) {
+    num_input_ = static_cast<double>(simplifications.front().surface.mesh().positions.size());
+    constexpr double kLargestShare = 0.5;  // of the input's vertices
+    for (const RefinableSurface& s : simplifications) first_.push_back(RungOfSize(num_input_ - static_cast<double>(s.history.num_collapses())));
+    last_ = std::max(first_.front(), RungOfSize(std::max(kUsualSize, kLargestShare * num_input_)));
   }
 
   // Scores the rungs around the typical one and goes on until one on either side of the best is known to be much worse, or two to be
-  // worse: one alone may be a fluke of its simplification. Returns the most promising rungs, best first; at least one.
-  StatusOr<std::vector<int>> FindBest(const std::function<void(double, const char*)>& progress, const std::function<bool(double)>& is_outdone) {
-    const int first = std::clamp(RungOfSize(TypicalBase(TypicalPsnr(target_, num_input_))), first_, last_);
+  // worse: one alone may be a fluke of its simplification. Other simplifications are looked at where the best one is. Returns the most promising
+  // bases, best first; at least one.
+  StatusOr<std::vector<BaseChoice>> FindBest(const std::function<void(double, const char*)>& progress, const std::function<bool(double)>& is_outdone) {
+    const double typical_size = std::max(kUsualSize, TypicalBase(TypicalPsnr(target_, num_input_)));
+    const int first = std::clamp(RungOfSize(typical_size), first_.front(), last_);
     const Status outdone = Unsupported("a stream without levels is much smaller");
-    if (is_outdone(LeastBytesFrom(std::max(first - 1, first_)))) return outdone;
-    Visit(effort_.enough_sizes == 1 ? std::vector<int>{first} : std::vector<int>{first - 1, first, first + 1}, {});
+    if (is_outdone(LeastBytesFrom(std::max(first - kStride, first_.front())))) return outdone;
+    Visit(effort_.enough_bases == 1 ? std::vector<BaseChoice>{{0, first}} : std::vector<BaseChoice>{{0, first - kStride}, {0, first}, {0, first + kStride}}, {});
     for (;;) {
-      if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(rungs_.size())), "choosing the base mesh");
-      const std::vector<int> ranking = Ranking();
-      for (size_t i = effort_.at_a_time; i < ranking.size(); ++i) LetGo(&rungs_[ranking[i]]);
-      const int best = ranking.front(), highest = rungs_.rbegin()->first;
-      const bool is_scored = std::isfinite(rungs_[best].score);
-      std::vector<int> next, likely;  // likely: due after them, but where they are much worse
-      if (is_scored) {
-        for (const int r : {best - 1, best + 1}) {
-          const int beyond = 2 * r - best;
-          if (IsMissing(r)) {
-            next.push_back(r);
-            likely.push_back(beyond);
-          } else if (IsMissing(beyond) && rungs_.count(r) > 0 && !IsMuchWorse(rungs_[r], rungs_[best])) {
-            next.push_back(beyond);
-          }
-        }
-      } else if (highest < last_) {  // nothing reaches the target yet: larger bases
-        next = {highest + 1, highest + 2};
-      }
-      const bool is_enough = next.empty() || (rungs_.size() >= effort_.enough_sizes && is_scored);
+      if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(tried_.size())), "choosing the base mesh");
+      const std::vector<BaseChoice> ranking = Ranking();
+      for (size_t i = effort_.at_a_time; i < ranking.size(); ++i) LetGo(&tried_[ranking[i]]);
+      const BaseChoice best = ranking.front();
+      const bool is_scored = IsScored(best);
+      std::vector<BaseChoice> likely;
+      const std::vector<BaseChoice> next = NextChoices(best, &likely);
+      const bool is_enough = next.empty() || (tried_.size() >= effort_.enough_bases && is_scored);
       const double least_share = is_enough ? kLeastShareAtEnd : kLeastShare;
       // Where no base reaches the target any stream without levels that does outdoes them all.
-      const double without_score = is_enough ? std::numeric_limits<double>::infinity() : LeastBytesFrom(highest + 1);
-      if (is_outdone(is_scored ? least_share * std::exp(rungs_[best].score) : without_score)) return outdone;
+      const double without_score = is_enough ? std::numeric_limits<double>::infinity() : LeastBytesFrom(HighestRung() + kStride);
+      if (is_outdone(is_scored ? least_share * std::exp(tried_[best].score) : without_score)) return outdone;
       if (is_enough) {
-        std::vector<int> result;
-        for (const int r : ranking) {
-          if (rungs_[r].status.ok()) result.push_back(r);
-        }
         made_.clear();
-        if (result.empty()) return rungs_[best].status.WithContext("no base mesh can be coded");
-        return result;
+        return Promising(ranking);
       }
-      Visit(next, next.size() == 1 ? likely : std::vector<int>());
+      Visit(next, next.size() == 1 ? likely : std::vector<BaseChoice>());
     }
   }
 
-  // Takes a rung of FindBest, with all its levels, to the target. Several may be in parallel; afterwards it is let go of.
-  StatusOr<ChosenStream> Meet(int number) {
-    Rung& rung = rungs_.at(number);
-    if (!rung.candidate) {
-      LACERTA_RETURN_IF_ERROR(Remesh(number, &rung));
-      MakeCandidate(&rung);
-      if (std::isfinite(rung.score)) rung.search->BeginAt(rung.start);
+  // After FindBest: scores the sizes halfway to the neighbors of the best, over all simplifications. Returns those that are promising beside all that
+  // were tried, best first.
+  std::vector<BaseChoice> FindHalfway() {
+    const BaseChoice best = Ranking().front();
+    std::set<BaseChoice> halfway;
+    for (size_t s = 0; s < simplifications_.size(); ++s) {
+      for (const int r : {best.rung - kStride / 2, best.rung + kStride / 2}) {
+        if (IsMissing({s, r})) halfway.insert({s, r});
+      }
     }
-    LACERTA_ASSIGN_OR_RETURN(MeasuredStream measured, rung.search->Meet());
-    ChosenStream chosen{std::move(measured), rung.remesh_psnr, NormalShare(rung.candidate->normal_mesh())};
-    LetGo(&rung);
+    Visit({halfway.begin(), halfway.end()}, {});
+    const std::vector<BaseChoice> ranking = Ranking();
+    std::vector<BaseChoice> result;
+    for (const BaseChoice& c : ranking) {
+      if (halfway.count(c) == 0) continue;
+      if (result.size() < effort_.at_a_time && tried_.at(c).status.ok() && !IsHopeless(c, ranking.front())) {
+        result.push_back(c);
+      } else {
+        LetGo(&tried_.at(c));
+      }
+    }
+    return result;
+  }
+
+  // Takes a base of FindBest, with all its levels, to the target. Several may be in parallel; afterwards it is let go of.
+  StatusOr<ChosenStream> Meet(const BaseChoice& choice) {
+    TriedBase& base = tried_.at(choice);
+    if (!base.candidate || (base.may_grow && base.remesh_psnr < TypicalPsnr(target_, num_input_) + kComfort)) {
+      LetGo(&base);
+      LACERTA_RETURN_IF_ERROR(Remesh(choice, kComfort, &base));
+      MakeCandidate(&base);
+      if (std::isfinite(base.score)) base.search->BeginAt(base.start);
+    }
+    LACERTA_ASSIGN_OR_RETURN(MeasuredStream measured, base.search->Meet());
+    ChosenStream chosen{std::move(measured), base.remesh_psnr, NormalShare(base.candidate->normal_mesh())};
+    LetGo(&base);
     return chosen;
   }
 
+  // Whether the scores leave little hope that base a takes fewer bytes than b.
+  bool IsHopeless(const BaseChoice& a, const BaseChoice& b) const { return IsWorse(a, b, effort_.hopeless); }
+
  private:
-  uint32_t RungSize(int rung) const { return static_cast<uint32_t>(std::lround(kFirstRung * std::pow(effort_.size_ratio, rung))); }
+  uint32_t RungSize(int rung) const { return static_cast<uint32_t>(std::lround(kFirstRung * std::pow(kStrideRatio, static_cast<double>(rung) / kStride))); }
 
   int RungOfSize(double size) const {
-    return std::max(0, static_cast<int>(std::lround(std::log(size / kFirstRung) / std::log(effort_.size_ratio))));
+    return std::max(0, kStride * static_cast<int>(std::lround(std::log(size / kFirstRung) / std::log(kStrideRatio))));
   }
 
   // Of streams with a base of that rung or a larger one. Vertices of bases usually take three bytes and more.
   double LeastBytesFrom(int rung) const { return kFewestBytesPerVertex * RungSize(rung); }
 
-  // Whether rung a scores so much worse than b that it hardly is a fluke: neighbouring rungs are rarely further from the smooth curve
-  // of all rungs.
-  bool IsMuchWorse(const Rung& a, const Rung& b) const { return a.score >= b.score + effort_.much_worse * (target_.is_rate ? 10 : 1); }
+  // What a share of the bytes is in units of scores.
+  double ScoreOfShare(double share) const { return target_.is_rate ? share / kLogBytesPerDecibel : share; }
 
-  static void LetGo(Rung* rung) {
-    rung->search.reset();
-    rung->candidate.reset();
+  // Whether a scores worse than b by that share of the bytes. By much_worse it hardly is a fluke: neighboring rungs are rarely farther from the
+  // smooth curve of all rungs.
+  bool IsWorse(const BaseChoice& a, const BaseChoice& b, double share) const { return tried_.at(a).score >= tried_.at(b).score + ScoreOfShare(share); }
+
+  static void LetGo(TriedBase* base) {
+    base->search.reset();
+    base->candidate.reset();
   }
 
-  bool IsMissing(int r) const { return r >= first_ && r <= last_ && rungs_.count(r) == 0; }
+  bool IsOnLadder(const BaseChoice& c) const { return c.rung >= first_[c.simplification] && c.rung <= last_; }
+  bool IsMissing(const BaseChoice& c) const { return IsOnLadder(c) && tried_.count(c) == 0; }
 
-  // Where to begin the search at a rung: where the nearest one that was scored ended.
-  std::optional<SearchStart> StartOf(int number) const {
+  bool IsScored(const BaseChoice& c) const { return std::isfinite(tried_.at(c).score); }
+  int HighestRung() const {
+    int highest = 0;
+    for (const auto& [c, base] : tried_) highest = std::max(highest, c.rung);
+    return highest;
+  }
+
+  // What to visit next; nothing where enough is known. likely: due after that, unless it turns out to be much worse than the best.
+  std::vector<BaseChoice> NextChoices(const BaseChoice& best, std::vector<BaseChoice>* likely) const {
+    if (!IsScored(best)) {  // nothing reaches the target yet: larger bases
+      const int highest = HighestRung();
+      return highest < last_ ? std::vector<BaseChoice>{{0, highest + kStride}, {0, highest + 2 * kStride}} : std::vector<BaseChoice>();
+    }
+    std::vector<BaseChoice> next = Beside(best, likely);
+    return next.empty() ? OfOtherSimplifications(best) : next;
+  }
+
+  // Bases of the same simplification on either side of the best.
+  std::vector<BaseChoice> Beside(const BaseChoice& best, std::vector<BaseChoice>* likely) const {
+    std::vector<BaseChoice> result;
+    for (const int side : {-kStride, kStride}) {
+      const BaseChoice neighbor = best.At(best.rung + side), beyond = best.At(best.rung + 2 * side);
+      if (IsMissing(neighbor)) {
+        result.push_back(neighbor);
+        likely->push_back(beyond);
+      } else if (IsMissing(beyond) && tried_.count(neighbor) > 0 && !IsWorse(neighbor, best, effort_.much_worse)) {
+        result.push_back(beyond);
+      }
+    }
+    return result;
+  }
+
+  // Bases that other simplifications have at the size of the best, and then beside it where they are near.
+  std::vector<BaseChoice> OfOtherSimplifications(const BaseChoice& best) const {
+    std::vector<BaseChoice> result;
+    for (size_t s = 0; s < simplifications_.size(); ++s) {
+      const BaseChoice other{s, best.rung};
+      if (IsMissing(other)) {
+        result.push_back(other);
+      } else if (tried_.count(other) > 0 && !IsWorse(other, best, effort_.much_worse / 2)) {
+        for (const int r : {best.rung - kStride, best.rung + kStride}) {
+          if (IsMissing(other.At(r))) result.push_back(other.At(r));
+        }
+      }
+    }
+    return result;
+  }
+
+  // Where to begin the search at a base: where that of the nearest size that was scored ended.
+  std::optional<SearchStart> StartOf(const BaseChoice& choice) const {
     std::optional<SearchStart> start;
     int least = std::numeric_limits<int>::max();
-    for (const auto& [r, rung] : rungs_) {
-      if (!std::isfinite(rung.score) || std::abs(r - number) >= least) continue;
-      least = std::abs(r - number);
-      start = rung.start;
+    for (const auto& [c, base] : tried_) {
+      if (!std::isfinite(base.score) || std::abs(c.rung - choice.rung) >= least) continue;
+      least = std::abs(c.rung - choice.rung);
+      start = base.start;
     }
     return start;
   }
 
-  // Makes and scores the given rungs; those off the ladder are left out. A base that fails costs only itself. likely: to be visited later,
+  // Makes and scores the given bases; those off the ladder are left out. A base that fails costs only itself. likely: to be visited later,
   // made now where there are threads for it. What is found does not depend on it.
-  void Visit(const std::vector<int>& numbers, const std::vector<int>& likely) {
+  void Visit(const std::vector<BaseChoice>& choices, const std::vector<BaseChoice>& likely) {
     struct Visited {
-      int number;
+      BaseChoice choice;
       bool is_scored;
-      Rung rung;
+      TriedBase base;
     };
     std::vector<Visited> visited;
-    for (const int r : numbers) {
-      if (r < first_ || r > last_) continue;
-      const auto made = made_.extract(r);
-      visited.push_back({r, true, made.empty() ? Rung() : std::move(made.mapped())});
+    for (const BaseChoice& c : choices) {
+      if (!IsOnLadder(c)) continue;
+      const auto made = made_.extract(c);
+      visited.push_back({c, true, made.empty() ? TriedBase() : std::move(made.mapped())});
     }
-    for (const int r : likely) {
-      if (IsMissing(r) && made_.count(r) == 0 && AreInParallel(num_input_)) visited.push_back({r, false, Rung()});
+    for (const BaseChoice& c : likely) {
+      if (IsMissing(c) && made_.count(c) == 0 && AreInParallel(num_input_)) visited.push_back({c, false, TriedBase()});
     }
+    const double comfort = effort_.enough_bases == 1 ? kComfort : kLittleComfort;  // a single one is taken to the target anyway
     ForEachCandidate(num_input_, visited.size(), [&](size_t i) {
-      Rung& rung = visited[i].rung;
-      if (!rung.remesh && rung.status.ok()) rung.status = Remesh(visited[i].number, &rung);
-      if (visited[i].is_scored && rung.status.ok()) rung.status = Score(visited[i].number, &rung);
+      TriedBase& base = visited[i].base;
+      if (!base.remesh && base.status.ok()) base.status = Remesh(visited[i].choice, comfort, &base);
+      if (visited[i].is_scored && base.status.ok()) base.status = Score(visited[i].choice, &base);
     });
-    for (Visited& v : visited) (v.is_scored ? rungs_ : made_)[v.number] = std::move(v.rung);
+    for (Visited& v : visited) (v.is_scored ? tried_ : made_)[v.choice] = std::move(v.base);
   }
 
-  Status Remesh(int number, Rung* rung) const {
-    LACERTA_ASSIGN_OR_RETURN(rung->remesh, RemeshForPsnr(surface_, RungSize(number), TypicalPsnr(target_, num_input_), target_.base_coding, meter_));
+  Status Remesh(const BaseChoice& choice, double comfort, TriedBase* base) const {
+    const double psnr = TypicalPsnr(target_, num_input_) + comfort;
+    LACERTA_ASSIGN_OR_RETURN(base->remesh, RemeshForPsnr(simplifications_[choice.simplification], RungSize(choice.rung), psnr, target_.base_coding, meter_));
     return Status();
   }
 
-  void MakeCandidate(Rung* rung) const {
-    rung->remesh_psnr = rung->remesh->psnr;
-    rung->candidate = std::make_unique<NormalMeshCandidate>(std::move(rung->remesh->base), std::move(rung->remesh->mesh));
-    rung->remesh.reset();
-    rung->search = std::make_unique<CandidateSearch>(*rung->candidate, rung->remesh_psnr, meter_, target_, mode_, effort_);
+  void MakeCandidate(TriedBase* base) const {
+    base->remesh_psnr = base->remesh->psnr;
+    base->may_grow = base->remesh->may_grow;
+    base->candidate = std::make_unique<NormalMeshCandidate>(std::move(base->remesh->base), std::move(base->remesh->mesh));
+    base->remesh.reset();
+    base->search = std::make_unique<CandidateSearch>(*base->candidate, base->remesh_psnr, meter_, target_, mode_, effort_);
   }
 
-  Status Score(int number, Rung* rung) const {
-    MakeCandidate(rung);
+  Status Score(const BaseChoice& choice, TriedBase* base) const {
+    MakeCandidate(base);
     constexpr double kHeadroom = 0.5;  // dB that quantization takes at least
-    if (const std::optional<SearchStart> start = StartOf(number)) rung->search->BeginAt(*start);
-    if (!target_.is_rate && rung->remesh_psnr < target_.psnr + kHeadroom) return Status();
-    LACERTA_ASSIGN_OR_RETURN(rung->score, rung->search->Score());
+    if (const std::optional<SearchStart> start = StartOf(choice)) base->search->BeginAt(*start);
+    if (!target_.is_rate && base->remesh_psnr < target_.psnr + kHeadroom) return Status();
+    LACERTA_ASSIGN_OR_RETURN(base->score, base->search->Score());
     if (target_.quality_layers > 1) {  // a large base comes before all else: it costs prefixes what it saves at the end
-      constexpr double kPrefixCost = 0.03;  // of ln(bytes), per rung
-      rung->score += kPrefixCost * number * (target_.is_rate ? 1 / kLogBytesPerDecibel : 1.0);
+      constexpr double kPrefixCost = 0.015;  // of ln(bytes), per rung
+      base->score += ScoreOfShare(kPrefixCost * choice.rung);
     }
-    rung->start = rung->search->start();
+    base->start = base->search->start();
     return Status();
   }
 
-  // Rungs by score, the lowest first, or, where none reaches the target, by the quality of the remesh.
-  std::vector<int> Ranking() const {
-    std::vector<int> numbers;
-    for (const auto& [r, rung] : rungs_) numbers.push_back(r);
-    std::stable_sort(numbers.begin(), numbers.end(), [&](int a, int b) {
-      const Rung &x = rungs_.at(a), &y = rungs_.at(b);
+  // Bases by score, the lowest first, or, where none reaches the target, by the quality of the remesh.
+  std::vector<BaseChoice> Ranking() const {
+    std::vector<BaseChoice> choices;
+    for (const auto& [c, base] : tried_) choices.push_back(c);
+    std::stable_sort(choices.begin(), choices.end(), [&](const BaseChoice& a, const BaseChoice& b) {
+      const TriedBase &x = tried_.at(a), &y = tried_.at(b);
       if (std::isfinite(x.score) || std::isfinite(y.score)) return x.score < y.score;
       return x.remesh_psnr > y.remesh_psnr;
     });
-    return numbers;
+    return choices;
   }
 
-  const RefinableSurface& surface_;
+  // Of a ranking those that can be coded.
+  StatusOr<std::vector<BaseChoice>> Promising(const std::vector<BaseChoice>& ranking) const {
+    std::vector<BaseChoice> result;
+    for (const BaseChoice& c : ranking) {
+      if (tried_.at(c).status.ok()) result.push_back(c);
+    }
+    if (result.empty()) return tried_.at(ranking.front()).status.WithContext("no base mesh can be coded");
+    return result;
+  }
+
+  const std::vector<RefinableSurface>& simplifications_;
   const SurfaceDistanceMeter& meter_;
   const ResolvedTarget& target_;
   const EncodeMode mode_;
   const SearchEffort effort_;
   double num_input_;
-  int first_, last_;  // rungs: of the coarsest base that the history has, and of the largest worth trying
-  std::map<int, Rung> rungs_, made_;  // made_: not yet scored
+  std::vector<int> first_;  // rung of the coarsest base that each simplification has
+  int last_;                // rung of the largest base worth trying
+  std::map<BaseChoice, TriedBase> tried_, made_;  // made_: not yet scored
 };
 
 }  // namespace
@@ -261,26 +357,34 @@ StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_
   return InvalidArgument("unknown kind of target");
 }
 
-StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
-                                    const std::function<void(double, const char*)>& progress, const SearchEffort& effort,
+StatusOr<ChosenStream> CodeAtTarget(const std::vector<RefinableSurface>& simplifications, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
+                                    EncodeMode mode, const std::function<void(double, const char*)>& progress, const SearchEffort& effort,
                                     const std::function<bool(double)>& is_outdone) {
-  Ladder ladder(surface, meter, target, mode, effort);
+  Ladder ladder(simplifications, meter, target, mode, effort);
   const bool may_be_outdone = is_outdone && !target.is_rate;
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<int> rungs, ladder.FindBest(progress, may_be_outdone ? is_outdone : [](double) { return false; }));
+  LACERTA_ASSIGN_OR_RETURN(const std::vector<BaseChoice> bases, ladder.FindBest(progress, may_be_outdone ? is_outdone : [](double) { return false; }));
   if (progress) progress(0.8, "meeting the target");
-  // Scores are estimates: a few candidates at a time are taken to the target until one meets it, and the better of them is kept.
   StatusOr<ChosenStream> best = InternalError("no base was taken to the target");
-  const size_t at_a_time = target.quality_layers > 1 ? 1 : effort.at_a_time;  // with layers the fewest bytes are not all that counts
-  for (size_t first = 0; first < std::min(kMost, rungs.size()); first += at_a_time) {
-    const size_t count = std::min(at_a_time, rungs.size() - first);
+  const auto meet = [&](const BaseChoice* bases_to_meet, size_t count) {
     std::vector<StatusOr<ChosenStream>> met(count, InternalError("not tried"));
-    ForEachCandidate(static_cast<double>(surface.surface.mesh().positions.size()), count,
-                     [&](size_t i) { met[i] = ladder.Meet(rungs[first + i]); });
+    ForEachCandidate(static_cast<double>(simplifications.front().surface.mesh().positions.size()), count, [&](size_t i) { met[i] = ladder.Meet(bases_to_meet[i]); });
     for (StatusOr<ChosenStream>& tried : met) {  // one that fails costs only itself
       const bool is_better = !best.ok() || (tried.ok() && IsBetter(OutcomeOf(tried.value().measured), OutcomeOf(best.value().measured), target));
       if (is_better) best = std::move(tried);
     }
+  };
+  // Scores are estimates: a few candidates at a time are taken to the target until one meets it, and the better of them is kept.
+  const size_t at_a_time = target.quality_layers > 1 ? 1 : effort.at_a_time;  // with layers the fewest bytes are not all that counts
+  for (size_t first = 0; first < std::min(kMost, bases.size());) {
+    size_t count = 1;
+    while (count < at_a_time && first + count < bases.size() && !ladder.IsHopeless(bases[first + count], bases[first])) ++count;
+    meet(&bases[first], count);
     if (best.ok() && best.value().measured.meets_target) break;
+    first += count;
+  }
+  if (effort.every_size) {
+    const std::vector<BaseChoice> halfway = ladder.FindHalfway();
+    meet(halfway.data(), halfway.size());
   }
   return best;
 }

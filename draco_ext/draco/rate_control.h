@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "draco/candidate_search.h"
 #include "draco/refinable_surface.h"
@@ -43,9 +44,10 @@ bool IsBetter(const Outcome& a, const Outcome& b, const ResolvedTarget& target);
 
 // Codes the surface at the target: fewest bytes at a PSNR, highest PSNR at a number of bytes. Where no base size reaches the
 // target the nearest stream is returned, and says so.
+// simplifications: at least one, each of the same surface in another way; over which of them a stream takes the fewest bytes is up to the surface.
 // progress: as in EncodeOptions, may be empty. is_outdone: may be empty; asked at a PSNR, as more becomes known, with the bytes that the stream
 // will take at least, infinity where none reaches the target; once it says yes, kUnsupported is returned.
-StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
+StatusOr<ChosenStream> CodeAtTarget(const std::vector<RefinableSurface>& simplifications, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
                                     const std::function<void(double, const char*)>& progress, const SearchEffort& effort = SearchEffort(),
                                     const std::function<bool(double)>& is_outdone = {});
 

@@ -3,38 +3,39 @@
 #define LACERTA_DRACO_SEARCH_EFFORT_H_
 
 #include <cstddef>
-#include <vector>
 
 #include "lacerta/codec.h"
 
 namespace lacerta {
 
 struct SearchEffort {
-  double size_ratio = 1.5;   // between neighbors of the base sizes tried
-  double much_worse = 0.06;  // share of the bytes: neighbors that are worse by that end the walk over base sizes
-  size_t enough_sizes = 100;  // after so many the best is taken, worse neighbors on either side or not; 1: the usual size, where it can do
-  size_t at_a_time = 2;      // of those, taken to the target together: the best of them is kept
+  // Shares of the bytes: neighbors that are worse by that end the walk over base sizes; candidates that are worse by that than the best are not
+  // taken to the target beside it.
+  double much_worse = 0.06, hopeless = 0.015;
+  size_t simplifications = 2;  // of the surface, over which bases are tried
+  bool every_size = false;     // sizes halfway between those of the walk are tried, too, beside the best
+  size_t enough_bases = 100;   // after so many the best is taken, worse neighbors on either side or not; 1: the usual size, where it can do
+  size_t at_a_time = 2;        // of those, taken to the target together: the best of them is kept
   // Passes of the descent: scores compare candidates, which a few tell; the stream that is kept is worth more.
   int score_passes = 2, meet_passes = 8;
   int suit_passes = 3;  // where steps are suited to the surface; 0: they are not
   int draws = 3;        // codings at the target: slopes that hardly differ give streams that differ by a percent, of which the best goes on
-  std::vector<double> shape_sizes = {0.6, 1.0, 1.6};  // as in BestShapedHistory
   double zero_level_tries = 1.0;  // share of the usual ones, at the end of the search for a stream without levels
-  bool every_shape = false;       // all of ShapedHistories are searched, not the one that looks best
 };
 
 // docs/results/effort_table.md has what they cost and gain.
 inline SearchEffort EffortOf(Effort effort) {
-  switch (effort) {
-    case Effort::kFast: return {1.5, 0.03, 1, 1, 1, 3, 0, 1, {}, 0.25};
-    case Effort::kNormal: return {};
-    case Effort::kBest: {  // what kNormal finds is among what this finds
-      SearchEffort widest;
-      widest.every_shape = true;
-      return widest;
-    }
+  SearchEffort result;
+  if (effort == Effort::kFast) {
+    result.simplifications = result.enough_bases = result.at_a_time = 1;
+    result.score_passes = 1;
+    result.meet_passes = 3;
+    result.suit_passes = 0;
+    result.draws = 1;
+    result.zero_level_tries = 0.25;
   }
-  return {};
+  if (effort == Effort::kBest) result.every_size = true;  // what kNormal finds is among what this finds
+  return result;
 }
 
 }  // namespace lacerta

@@ -64,7 +64,7 @@ struct Coder {
   explicit Coder(const TriangleMesh& m)
       : mesh(m), surface(mesh, testing::TopologyOf(mesh)), history(testing::Decimated(mesh)), meter(SurfaceDistanceMeter::Create(mesh).value()) {}
   ChosenStream Code(const ResolvedTarget& target) const {
-    return CodeAtTarget({surface, history, {}}, meter, target, EncodeMode::kDefault, {}).value();
+    return CodeAtTarget({{surface, history, {}}}, meter, target, EncodeMode::kDefault, {}).value();
   }
 
   TriangleMesh mesh;
@@ -73,13 +73,39 @@ struct Coder {
   SurfaceDistanceMeter meter;
 };
 
-TEST(CodeAtTargetTest, BasesGrowWithTheQualityAskedFor) {
+TEST(CodeAtTargetTest, FinerTargetsTakeMoreBytes) {
   const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
   const ChosenStream coarse = coder.Code({false, 0, 36}), fine = coder.Code({false, 0, 60});
   EXPECT_TRUE(coarse.measured.meets_target);
   EXPECT_TRUE(fine.measured.meets_target);
-  EXPECT_LE(coarse.measured.stream.decoded.num_base_vertices, fine.measured.stream.decoded.num_base_vertices);
-  EXPECT_GE(4 * fine.measured.stream.size(), 5 * coarse.measured.stream.size());
+  EXPECT_GE(fine.measured.stream.size(), 2 * coarse.measured.stream.size());
+  EXPECT_LE(fine.measured.stream.size(), 6 * coarse.measured.stream.size());
+}
+
+TEST(CodeAtTargetTest, SmoothSurfacesHaveTinyBases) {
+  const Coder coder(shapes::BumpySphere(4, 0.1f));
+  const ChosenStream chosen = coder.Code({false, 0, 52});
+  EXPECT_TRUE(chosen.measured.meets_target);
+  EXPECT_LE(chosen.measured.stream.decoded.num_base_vertices, 32u);
+  EXPECT_GE(chosen.measured.stream.decoded.num_base_vertices, 14u);
+}
+
+// Whichever of two simplifications comes first, the stream is about that of the better one.
+TEST(CodeAtTargetTest, TakesTheBetterSimplification) {
+  const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
+  DecimateOptions early;
+  early.target_vertices = 100;
+  const CollapseHistory history = Decimate(coder.mesh, testing::TopologyOf(coder.mesh), early);
+  const RefinableSurface good{coder.surface, coder.history, {}}, bad{coder.surface, history, {}};
+  const auto size = [&](const std::vector<RefinableSurface>& simplifications) {
+    const ChosenStream chosen = CodeAtTarget(simplifications, coder.meter, {false, 0, 50}, EncodeMode::kDefault, {}).value();
+    EXPECT_TRUE(chosen.measured.meets_target);
+    return static_cast<double>(chosen.measured.stream.size());
+  };
+  const double least = size({good}), most = size({bad});
+  ASSERT_GT(most, 1.2 * least);
+  EXPECT_NEAR(size({good, bad}), least, 0.06 * least);
+  EXPECT_NEAR(size({bad, good}), least, 0.06 * least);
 }
 
 // Its triangles are as large as what the stream may be wrong by, and few to decode.
@@ -104,7 +130,7 @@ TEST(CodeAtTargetTest, EffortTradesBaseSizesForBytes) {
     int rounds = 0;
     const auto progress = [&](double, const char* stage) { rounds += std::string(stage) == "choosing the base mesh"; };
     const ChosenStream chosen =
-        CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, {false, 0, 54}, EncodeMode::kDefault, progress, EffortOf(effort)).value();
+        CodeAtTarget({{coder.surface, coder.history, {}}}, coder.meter, {false, 0, 54}, EncodeMode::kDefault, progress, EffortOf(effort)).value();
     EXPECT_TRUE(chosen.measured.meets_target);
     return Outcome{static_cast<double>(chosen.measured.stream.size()), rounds};
   };
@@ -112,7 +138,7 @@ TEST(CodeAtTargetTest, EffortTradesBaseSizesForBytes) {
   EXPECT_EQ(fast.rounds, 1);
   EXPECT_GE(normal.rounds, fast.rounds);
   EXPECT_GE(fast.bytes, 0.98 * normal.bytes);
-  EXPECT_LE(fast.bytes, 1.2 * normal.bytes);
+  EXPECT_LE(fast.bytes, 1.3 * normal.bytes);
 }
 
 TEST(ForEachCandidateTest, LargeInputsAreWorkedOnOneByOne) {
@@ -145,7 +171,7 @@ TEST(CodeAtTargetTest, ReportsStages) {
     EXPECT_STRNE(stage, "");
     shares.push_back(share);
   };
-  ASSERT_TRUE(CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, {false, 0, 50}, EncodeMode::kDefault, progress).ok());
+  ASSERT_TRUE(CodeAtTarget({{coder.surface, coder.history, {}}}, coder.meter, {false, 0, 50}, EncodeMode::kDefault, progress).ok());
   ASSERT_GE(shares.size(), 2u);
   for (size_t i = 0; i < shares.size(); ++i) {
     EXPECT_GE(shares[i], i == 0 ? 0.0 : shares[i - 1]);
@@ -156,7 +182,7 @@ TEST(CodeAtTargetTest, ReportsStages) {
 TEST(CodeAtTargetTest, GivesUpWhereItIsOutdone) {
   const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
   const auto code = [&](const ResolvedTarget& target, double bytes, std::vector<double>* asked) {
-    return CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, target, EncodeMode::kDefault, {}, EffortOf(Effort::kFast), [&](double least) {
+    return CodeAtTarget({{coder.surface, coder.history, {}}}, coder.meter, target, EncodeMode::kDefault, {}, EffortOf(Effort::kFast), [&](double least) {
       asked->push_back(least);
       return least > bytes;
     });
@@ -175,7 +201,7 @@ TEST(CodeAtTargetTest, GivesUpWhereItIsOutdone) {
 TEST(CodeAtTargetTest, AnyStreamOutdoesBasesThatMissTheTarget) {
   const Coder coder(shapes::CreasedBox(8));  // creases that a smooth remesh rounds
   double most = 0;
-  const StatusOr<ChosenStream> chosen = CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, {false, 0, 120}, EncodeMode::kDefault, {},
+  const StatusOr<ChosenStream> chosen = CodeAtTarget({{coder.surface, coder.history, {}}}, coder.meter, {false, 0, 120}, EncodeMode::kDefault, {},
                                                      EffortOf(Effort::kFast), [&](double least) {
                                                        most = least;
                                                        return least > 1e9;
