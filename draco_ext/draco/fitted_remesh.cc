@@ -48,19 +48,18 @@ bool IsBelow(double psnr, const NormalMesh& remesh, const SurfaceDistanceMeter& 
 
 StatusOr<FittedRemesh> RemeshForPsnr(const RefinableSurface& surface, uint32_t num_base_vertices, double psnr, BaseCoding coding,
                                      const SurfaceDistanceMeter& meter) {
-  constexpr double kComfort = 6;  // dB: a remesh nearer to the goal than that costs bytes and gets one level more
   constexpr double kMostGain = 6;  // dB that the fit brings
-  const double comfortable = psnr + kComfort, num_input = static_cast<double>(surface.surface.mesh().positions.size());
+  const double num_input = static_cast<double>(surface.surface.mesh().positions.size());
   std::unique_ptr<PiercedBase> pierced;
   for (int levels = LevelsFor(num_base_vertices, num_input);; ++levels) {
     LACERTA_ASSIGN_OR_RETURN(pierced, PierceUnreversed(surface, num_base_vertices, levels, coding, std::move(pierced)));
     const bool may_grow = 4 * static_cast<double>(pierced->refined().mesh.positions.size()) <= MostVertices(num_input);
-    if (may_grow && IsBelow(comfortable - kMostGain, pierced->Remesh(), meter)) continue;  // fitted or not
-    FittedRemesh result{pierced->base(), pierced->Remesh()};
+    if (may_grow && IsBelow(psnr - kMostGain, pierced->Remesh(), meter)) continue;  // fitted or not
+    FittedRemesh result{pierced->base(), pierced->Remesh(), 0, may_grow};
     if (!may_grow) pierced.reset();  // as large as what comes now
     FitToInput(surface.surface, SurfaceFitOptions(), &result.mesh);
     result.psnr = PsnrOf(result.mesh, meter, kRoughSamples);
-    if (!may_grow || result.psnr > comfortable) return result;
+    if (!may_grow || result.psnr > psnr) return result;
   }
 }
 

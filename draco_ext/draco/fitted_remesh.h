@@ -16,10 +16,11 @@ struct FittedRemesh {
   CodedBase base;
   NormalMesh mesh;  // over base.mesh, fitted to the input (remesh/surface_fit.h)
   double psnr = 0;  // dB, of the mesh
+  bool may_grow = false;  // one level more would not have more vertices than the input is worth
 };
 
-// Remeshes the surface over the base of about that many vertices, with levels until the remesh is much better than `psnr`, dB, or has many
-// times the input's vertices. meter: of the input. Fails where the base cannot be coded.
+// Remeshes the surface over the base of about that many vertices, with levels until the remesh is of that PSNR, dB, or has many times the
+// input's vertices. meter: of the input. Fails where the base cannot be coded.
 StatusOr<FittedRemesh> RemeshForPsnr(const RefinableSurface& surface, uint32_t num_base_vertices, double psnr, BaseCoding coding,
                                      const SurfaceDistanceMeter& meter);
 

@@ -42,12 +42,15 @@ struct TriedBase {
   std::unique_ptr<CandidateSearch> search;
   Status status;  // why there is no candidate, if so
   double remesh_psnr = 0;
+  bool may_grow = false;  // as of FittedRemesh
   double score = std::numeric_limits<double>::infinity();  // of CandidateSearch::Score; infinite: cannot reach the target
   SearchStart start;                                       // of CandidateSearch::start, where there is a score
 };
 
 // Candidates that are taken to the target in all. No more are kept than are taken at a time: each is as large as the input.
 constexpr size_t kMost = 4;
+// dB: a remesh that is nearer to the target than that costs bytes and gets one level more: before it is taken to the target, and to be scored.
+constexpr double kComfort = 12, kLittleComfort = 6;
 // What the bytes of the stream in the end are at least: against those of the best score so far, or of all, and for a vertex of the base.
 constexpr double kLeastShare = 0.45, kLeastShareAtEnd = 0.85, kFewestBytesPerVertex = 1.0;
 // What a PSNR costs, about: ln(bytes) per dB.
@@ -121,8 +124,9 @@ class Ladder {
   // Takes a base of FindBest, with all its levels, to the target. Several may be in parallel; afterwards it is let go of.
   StatusOr<ChosenStream> Meet(const BaseChoice& choice) {
     TriedBase& base = tried_.at(choice);
-    if (!base.candidate) {
-      LACERTA_RETURN_IF_ERROR(Remesh(choice, &base));
+    if (!base.candidate || (base.may_grow && base.remesh_psnr < TypicalPsnr(target_, num_input_) + kComfort)) {
+      LetGo(&base);
+      LACERTA_RETURN_IF_ERROR(Remesh(choice, kComfort, &base));
       MakeCandidate(&base);
       if (std::isfinite(base.score)) base.search->BeginAt(base.start);
     }
@@ -237,22 +241,24 @@ class Ladder {
     for (const BaseChoice& c : likely) {
       if (IsMissing(c) && made_.count(c) == 0 && AreInParallel(num_input_)) visited.push_back({c, false, TriedBase()});
     }
+    const double comfort = effort_.enough_bases == 1 ? kComfort : kLittleComfort;  // a single one is taken to the target anyway
     ForEachCandidate(num_input_, visited.size(), [&](size_t i) {
       TriedBase& base = visited[i].base;
-      if (!base.remesh && base.status.ok()) base.status = Remesh(visited[i].choice, &base);
+      if (!base.remesh && base.status.ok()) base.status = Remesh(visited[i].choice, comfort, &base);
       if (visited[i].is_scored && base.status.ok()) base.status = Score(visited[i].choice, &base);
     });
     for (Visited& v : visited) (v.is_scored ? tried_ : made_)[v.choice] = std::move(v.base);
   }
 
-  Status Remesh(const BaseChoice& choice, TriedBase* base) const {
-    const double psnr = TypicalPsnr(target_, num_input_);
+  Status Remesh(const BaseChoice& choice, double comfort, TriedBase* base) const {
+    const double psnr = TypicalPsnr(target_, num_input_) + comfort;
     LACERTA_ASSIGN_OR_RETURN(base->remesh, RemeshForPsnr(simplifications_[choice.simplification], RungSize(choice.rung), psnr, target_.base_coding, meter_));
     return Status();
   }
 
   void MakeCandidate(TriedBase* base) const {
     base->remesh_psnr = base->remesh->psnr;
+    base->may_grow = base->remesh->may_grow;
     base->candidate = std::make_unique<NormalMeshCandidate>(std::move(base->remesh->base), std::move(base->remesh->mesh));
     base->remesh.reset();
     base->search = std::make_unique<CandidateSearch>(*base->candidate, base->remesh_psnr, meter_, target_, mode_, effort_);
