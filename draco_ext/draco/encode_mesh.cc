@@ -8,13 +8,13 @@
 #include <string>
 #include <utility>
 
-#include "draco/simplifications.h"
 #include "draco/crowded_input.h"
 #include "draco/custom_form.h"
 #include "draco/decoded_distance.h"
 #include "draco/input_proxy.h"
 #include "draco/rate_control.h"
 #include "draco/search_effort.h"
+#include "draco/simplifications.h"
 #include "draco/still_part.h"
 #include "draco/subdivided_input.h"
 #include "draco/within_memory.h"

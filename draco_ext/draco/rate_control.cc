@@ -365,9 +365,9 @@ StatusOr<ChosenStream> CodeAtTarget(const std::vector<RefinableSurface>& simplif
   LACERTA_ASSIGN_OR_RETURN(const std::vector<BaseChoice> bases, ladder.FindBest(progress, may_be_outdone ? is_outdone : [](double) { return false; }));
   if (progress) progress(0.8, "meeting the target");
   StatusOr<ChosenStream> best = InternalError("no base was taken to the target");
-  const auto meet = [&](const BaseChoice* bases_to_meet, size_t count) {
-    std::vector<StatusOr<ChosenStream>> met(count, InternalError("not tried"));
-    ForEachCandidate(static_cast<double>(simplifications.front().surface.mesh().positions.size()), count, [&](size_t i) { met[i] = ladder.Meet(bases_to_meet[i]); });
+  const auto meet = [&](Span<const BaseChoice> choices) {
+    std::vector<StatusOr<ChosenStream>> met(choices.size(), InternalError("not tried"));
+    ForEachCandidate(static_cast<double>(simplifications.front().surface.mesh().positions.size()), met.size(), [&](size_t i) { met[i] = ladder.Meet(choices[i]); });
     for (StatusOr<ChosenStream>& tried : met) {  // one that fails costs only itself
       const bool is_better = !best.ok() || (tried.ok() && IsBetter(OutcomeOf(tried.value().measured), OutcomeOf(best.value().measured), target));
       if (is_better) best = std::move(tried);
@@ -378,14 +378,11 @@ StatusOr<ChosenStream> CodeAtTarget(const std::vector<RefinableSurface>& simplif
   for (size_t first = 0; first < std::min(kMost, bases.size());) {
     size_t count = 1;
     while (count < at_a_time && first + count < bases.size() && !ladder.IsHopeless(bases[first + count], bases[first])) ++count;
-    meet(&bases[first], count);
+    meet(Span<const BaseChoice>(bases).Subspan(first).First(count));
     if (best.ok() && best.value().measured.meets_target) break;
     first += count;
   }
-  if (effort.every_size) {
-    const std::vector<BaseChoice> halfway = ladder.FindHalfway();
-    meet(halfway.data(), halfway.size());
-  }
+  if (effort.every_size) meet(ladder.FindHalfway());
   return best;
 }
 

@@ -21,12 +21,12 @@ constexpr double kFinestBase = 7.5e3, kCoarsestBase = 2.5e4, kPerBaseVertex = 10
 bool IsCurved(int level) { return level <= kCurvedLevels; }
 
 // The details of the edges of level - 1, before quantization: along the normal, or the whole where vertices are kept.
-std::vector<double> DetailLengths(const SurfaceTarget& target, int level, bool is_curved) {
+std::vector<double> DetailLengths(const SurfaceTarget& target, int level) {
   const Topology& coarse = target.topologies[level - 1];
   const std::vector<Vec3f> positions(target.points.begin(), target.points.begin() + coarse.num_vertices);
   const std::vector<Vec3f> predicted = target.midpoints[level - 1].Predict(positions);
   const std::vector<LocalFrame> frames = ComputeLocalFrames(coarse, positions, predicted);
-  const std::vector<Vec3f> offsets = LevelOffsets(coarse, is_curved, positions, predicted);
+  const std::vector<Vec3f> offsets = LevelOffsets(coarse, IsCurved(level), positions, predicted);
   std::vector<double> lengths;
   for (uint32_t e = 0; e < coarse.num_edges(); ++e) {
     if (coarse.is_copy(e)) continue;
@@ -44,21 +44,10 @@ std::vector<double> DetailScales(const SurfaceTarget& target) {
   std::vector<double> scales;
   for (int level = 1; level <= target.num_levels(); ++level) {
     double sum = 0;
-    for (const double length : DetailLengths(target, level, IsCurved(level))) sum += length * length;
+    for (const double length : DetailLengths(target, level)) sum += length * length;
     scales.push_back(std::sqrt(sum / target.topologies[level - 1].num_edges()));
   }
   return scales;
-}
-
-double EstimateDetailBits(const SurfaceTarget& target, const std::vector<LevelSteps>& steps) {
-  double bits = 0;
-  for (int level = 1; level <= target.num_levels(); ++level) {
-    for (const double length : DetailLengths(target, level, steps[level - 1].is_curved)) {
-      const double q = length / steps[level - 1].normal_step;
-      bits += 0.5 * std::log2(1 + q * q);
-    }
-  }
-  return bits;
 }
 
 int LastDetailedLevel(const SurfaceTarget& target, const std::vector<double>& detail_scales, double lambda) {

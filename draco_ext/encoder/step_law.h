@@ -27,10 +27,6 @@ std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, int last_deta
 // The same with LastDetailedLevel. detail_scales: of DetailScales.
 std::vector<LevelSteps> StepsForSlope(const SurfaceTarget& target, const std::vector<double>& detail_scales, double lambda);
 
-// About the bits of the normal details at these steps, up to a factor: what Gaussian variables of their size would take. It tells normal
-// meshes of one surface apart without coding them.
-double EstimateDetailBits(const SurfaceTarget& target, const std::vector<LevelSteps>& steps);
-
 // Step of the base lattice, not yet rounded, model units.
 double BaseStepForSlope(double lambda, double num_base_vertices);
 

@@ -73,11 +73,11 @@ struct Coder {
   SurfaceDistanceMeter meter;
 };
 
-TEST(CodeAtTargetTest, FinerTargetsTakeMoreBytes) {
+TEST(CodeAtTargetTest, BasesGrowWithTheQualityAskedFor) {
   const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
-  const ChosenStream coarse = coder.Code({false, 0, 36}), fine = coder.Code({false, 0, 60});
-  EXPECT_TRUE(coarse.measured.meets_target);
-  EXPECT_TRUE(fine.measured.meets_target);
+  const ChosenStream coarse = coder.Code({false, 0, 36}), fine = coder.Code({false, 0, 60}), finest = coder.Code({false, 0, 75});  // its noise, too
+  for (const ChosenStream* chosen : {&coarse, &fine, &finest}) EXPECT_TRUE(chosen->measured.meets_target);
+  EXPECT_LE(4 * coarse.measured.stream.decoded.num_base_vertices, finest.measured.stream.decoded.num_base_vertices);
   EXPECT_GE(fine.measured.stream.size(), 2 * coarse.measured.stream.size());
   EXPECT_LE(fine.measured.stream.size(), 6 * coarse.measured.stream.size());
 }
@@ -138,7 +138,7 @@ TEST(CodeAtTargetTest, EffortTradesBaseSizesForBytes) {
   EXPECT_EQ(fast.rounds, 1);
   EXPECT_GE(normal.rounds, fast.rounds);
   EXPECT_GE(fast.bytes, 0.98 * normal.bytes);
-  EXPECT_LE(fast.bytes, 1.3 * normal.bytes);
+  EXPECT_LE(fast.bytes, 1.21 * normal.bytes);
 }
 
 TEST(ForEachCandidateTest, LargeInputsAreWorkedOnOneByOne) {
