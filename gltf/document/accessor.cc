@@ -10,21 +10,6 @@ namespace {
 // An accessor that only a sparse part fills may be long without bytes to show for it.
 constexpr uint64_t kMaxSparseCount = uint64_t{1} << 24;
 
-StatusOr<ComponentType> ParseComponentType(const Json& object) {
-  LACERTA_ASSIGN_OR_RETURN(const uint64_t code, GetIndex(object, "componentType"));
-  switch (code) {
-    case 5120:
-    case 5121:
-    case 5122:
-    case 5123:
-    case 5125:
-    case 5126:
-      return static_cast<ComponentType>(code);
-    default:
-      return InvalidData("componentType " + std::to_string(code) + " does not exist");
-  }
-}
-
 StatusOr<uint32_t> ParseComponents(const Json& object) {
   const std::string type = AsString(Find(object, "type"));
   if (type == "SCALAR") return uint32_t{1};
@@ -138,6 +123,21 @@ StatusOr<AccessorData> ReadNamed(const GltfDocument& document, uint64_t index,
 }
 
 }  // namespace
+
+StatusOr<ComponentType> ParseComponentType(const Json& object) {
+  LACERTA_ASSIGN_OR_RETURN(const uint64_t code, GetIndex(object, "componentType"));
+  switch (code) {
+    case 5120:
+    case 5121:
+    case 5122:
+    case 5123:
+    case 5125:
+    case 5126:
+      return static_cast<ComponentType>(code);
+    default:
+      return InvalidData("componentType " + std::to_string(code) + " does not exist");
+  }
+}
 
 size_t ComponentSize(ComponentType type) {
   switch (type) {

@@ -21,6 +21,9 @@ enum class ComponentType : uint32_t {
 
 size_t ComponentSize(ComponentType type);  // bytes
 
+// "componentType" of an accessor or of its sparse indices. Fails with kInvalidData where there is no such type.
+StatusOr<ComponentType> ParseComponentType(const Json& object);
+
 // Values of an accessor, densely packed: value i starts at i * components * ComponentSize(type).
 struct AccessorData {
   ComponentType type = ComponentType::kFloat;

@@ -1,50 +1,15 @@
 #include "document/buffer_edit.h"
 
 #include <algorithm>
-#include <functional>
-#include <iterator>
 #include <limits>
-#include <tuple>
 #include <utility>
+
+#include "document/view_references.h"
 
 namespace lacerta {
 namespace {
 
 constexpr uint64_t kAlignment = 4;
-
-// Calls visit(value) on every reference to a bufferView: by the key "bufferView" wherever it is, and "data" of our
-// extension.
-void VisitViewReferences(Json& json, const std::function<void(Json&)>& visit) {
-  if (json.is_array()) {
-    for (Json& element : json) VisitViewReferences(element, visit);
-  } else if (json.is_object()) {
-    for (const auto& [key, value] : json.items()) {
-      if (key == "extras") continue;
-      if (key == "bufferView") {
-        visit(value);
-      } else if (key == "LACERTA_mesh_progressive") {
-        for (const char* member : {"data", "refinements"}) {
-          if (Json* view = Find(value, member); view != nullptr) visit(*view);
-        }
-      } else {
-        VisitViewReferences(value, visit);
-      }
-    }
-  }
-}
-
-// Extensions known to refer to bufferViews by the key "bufferView" or not at all.
-bool MayRenumberViews(const GltfDocument& document) {
-  const Json* used = Find(document.json, "extensionsUsed");
-  if (used == nullptr || !used->is_array()) return true;
-  return std::all_of(used->begin(), used->end(), [](const Json& entry) {
-    const std::string name = AsString(&entry);
-    for (const char* prefix : {"KHR_", "LACERTA_", "EXT_texture_", "EXT_mesh_gpu_instancing", "EXT_lights_", "MSFT_"}) {
-      if (name.rfind(prefix, 0) == 0) return true;
-    }
-    return false;
-  });
-}
 
 const char* TypeName(uint32_t components) {
   constexpr const char* kNames[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
@@ -78,52 +43,6 @@ void ShrinkView(uint64_t index, GltfDocument* document) {
   if (length.has_value() && *length > kAlignment) view["byteLength"] = kAlignment;
   view.erase("byteStride");
   view.erase("target");
-}
-
-// What is needed to show anything, the progressive streams, and images, which a surface can be shown without: the order in
-// which a client that reads a file as it arrives wants them.
-enum class Turn { kNeeded, kStreams, kImage };
-
-std::vector<Turn> TurnsOfViews(const Json& json) {
-  std::vector<Turn> turns(ArraySize(json, "bufferViews"), Turn::kNeeded);
-  const auto set = [&](const Json* object, const char* member, Turn turn) {
-    const std::optional<uint64_t> view = object == nullptr ? std::nullopt : AsIndex(Find(*object, member));
-    if (view.has_value() && *view < turns.size()) turns[static_cast<size_t>(*view)] = turn;
-  };
-  for (uint64_t i = 0; i < ArraySize(json, "images"); ++i) set(FindElement(json, "images", i), "bufferView", Turn::kImage);
-  const Json* extensions = Find(json, "extensions");
-  set(extensions == nullptr ? nullptr : Find(*extensions, "LACERTA_mesh_progressive"), "data", Turn::kStreams);
-  return turns;
-}
-
-struct Interval {
-  uint64_t buffer = 0;
-  uint64_t begin = 0;
-  uint64_t end = 0;
-  Turn turn = Turn::kNeeded;
-  uint64_t moved_to = 0;
-};
-
-// Of two views of the same bytes; bases are seen through views of their own, too.
-Turn TurnOfBoth(Turn a, Turn b) {
-  return a == Turn::kStreams || b == Turn::kStreams ? Turn::kStreams : std::min(a, b);
-}
-
-// Disjoint parts of the buffers that cover all their views, by buffers and then ascending.
-std::vector<Interval> Union(std::vector<Interval> intervals) {
-  std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) {
-    return std::tie(a.buffer, a.begin) < std::tie(b.buffer, b.begin);
-  });
-  std::vector<Interval> merged;
-  for (const Interval& interval : intervals) {
-    if (!merged.empty() && interval.buffer == merged.back().buffer && interval.begin < merged.back().end) {
-      merged.back().end = std::max(merged.back().end, interval.end);
-      merged.back().turn = TurnOfBoth(merged.back().turn, interval.turn);
-    } else {
-      merged.push_back(interval);
-    }
-  }
-  return merged;
 }
 
 }  // namespace
@@ -240,17 +159,6 @@ uint64_t AddAccessor(Json accessor, GltfDocument* document) {
   return accessors.size() - 1;
 }
 
-std::set<uint64_t> ViewsOfAccessor(const GltfDocument& document, uint64_t index) {
-  std::set<uint64_t> views;
-  const Json* accessor = FindElement(document.json, "accessors", index);
-  if (accessor == nullptr) return views;
-  Json copy = *accessor;
-  VisitViewReferences(copy, [&](Json& reference) {
-    if (const std::optional<uint64_t> view = AsIndex(&reference); view.has_value()) views.insert(*view);
-  });
-  return views;
-}
-
 void DropUnusedViews(const std::set<uint64_t>& candidates, GltfDocument* document) {
   std::set<uint64_t> unused = candidates;
   unused.erase(unused.lower_bound(ArraySize(document->json, "bufferViews")), unused.end());  // may dangle
@@ -258,7 +166,7 @@ void DropUnusedViews(const std::set<uint64_t>& candidates, GltfDocument* documen
     if (const std::optional<uint64_t> view = AsIndex(&reference); view.has_value()) unused.erase(*view);
   });
   if (unused.empty()) return;
-  if (!MayRenumberViews(*document)) {
+  if (!AreViewReferencesKnown(*document)) {
     for (const uint64_t index : unused) ShrinkView(index, document);
     return;
   }
@@ -278,53 +186,6 @@ void DropUnusedViews(const std::set<uint64_t>& candidates, GltfDocument* documen
   } else {
     document->json["bufferViews"] = std::move(views);
   }
-}
-
-Status MergeBuffers(GltfDocument* document) {
-  const uint64_t num_views = ArraySize(document->json, "bufferViews");
-  const std::vector<Turn> turns = TurnsOfViews(document->json);
-  std::vector<Interval> used;
-  for (uint64_t i = 0; i < num_views; ++i) {
-    LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(*document, i));
-    const uint64_t buffer = *AsIndex(Find(*FindElement(document->json, "bufferViews", i), "buffer"));
-    const auto begin = static_cast<uint64_t>(bytes.data() - document->buffers[static_cast<size_t>(buffer)].data());
-    if (!bytes.empty()) used.push_back({buffer, begin, begin + bytes.size(), turns[static_cast<size_t>(i)]});
-  }
-  used = Union(std::move(used));
-  Bytes merged;
-  for (const Turn turn : {Turn::kNeeded, Turn::kStreams, Turn::kImage}) {
-    for (Interval& interval : used) {
-      if (interval.turn != turn) continue;
-      const Bytes& source = document->buffers[static_cast<size_t>(interval.buffer)];
-      while (merged.size() % kAlignment != interval.begin % kAlignment) merged.push_back(0);
-      interval.moved_to = merged.size();
-      merged.insert(merged.end(), source.begin() + static_cast<std::ptrdiff_t>(interval.begin),
-                    source.begin() + static_cast<std::ptrdiff_t>(interval.end));
-    }
-  }
-  constexpr uint64_t kRoomForJson = uint64_t{1} << 30;
-  if (merged.size() > std::numeric_limits<uint32_t>::max() - kRoomForJson) {
-    return Unsupported("the result would not fit into a GLB (4 GB); split the asset");
-  }
-  for (uint64_t i = 0; i < num_views; ++i) {
-    Json& view = document->json["bufferViews"][static_cast<size_t>(i)];
-    const std::pair<uint64_t, uint64_t> place = {*AsIndex(Find(view, "buffer")),
-                                                 AsIndex(Find(view, "byteOffset")).value_or(0)};
-    const auto after = std::upper_bound(used.begin(), used.end(), place, [](const auto& wanted, const Interval& interval) {
-      return wanted < std::make_pair(interval.buffer, interval.begin);
-    });
-    uint64_t moved = 0;  // of views without bytes
-    if (after != used.begin()) {
-      const Interval& interval = *std::prev(after);
-      if (place.first == interval.buffer && place.second < interval.end) moved = interval.moved_to + (place.second - interval.begin);
-    }
-    view["buffer"] = 0;
-    PlaceView(moved, &view);
-  }
-  document->buffers.clear();
-  document->json.erase("buffers");
-  if (!merged.empty()) AddBuffer(std::move(merged), document);
-  return Status();
 }
 
 }  // namespace lacerta

@@ -1,4 +1,4 @@
-// Changing what a document holds: new bufferViews and accessors, dropping unused views, one buffer at the end.
+// Changing what a document holds: new bufferViews and accessors, dropping unused views.
 #ifndef LACERTA_DOCUMENT_BUFFER_EDIT_H_
 #define LACERTA_DOCUMENT_BUFFER_EDIT_H_
 
@@ -36,17 +36,9 @@ Json DescribeAccessor(const AccessorData& data, bool bounds);
 
 uint64_t AddAccessor(Json accessor, GltfDocument* document);
 
-// The bufferViews that accessor `index` refers to, itself or through its sparse part.
-std::set<uint64_t> ViewsOfAccessor(const GltfDocument& document, uint64_t index);
-
 // Drops those of `candidates` that nothing refers to any more and renumbers the others. Where the asset uses an
 // extension that may refer to bufferViews in a way of its own, they are cut down to a few bytes instead.
 void DropUnusedViews(const std::set<uint64_t>& candidates, GltfDocument* document);
-
-// Moves all that bufferViews refer to into one buffer and drops the rest: first what is needed to show anything, then the
-// data of LACERTA_mesh_progressive, then images, each in the order of the buffers (decision 0022). Fails with
-// kUnsupported beyond 4 GB and with kInvalidData where a view refers to bytes that are not there.
-Status MergeBuffers(GltfDocument* document);
 
 }  // namespace lacerta
 

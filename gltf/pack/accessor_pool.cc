@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "document/buffer_edit.h"
+#include "document/view_references.h"
 
 namespace lacerta {
 namespace {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "document/buffer_edit.h"
+#include "document/merge_buffers.h"
 #include "document/draco_encode.h"
 #include "document/embed_images.h"
 #include "document/gltf_document.h"

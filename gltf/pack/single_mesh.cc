@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "document/buffer_edit.h"
+#include "document/merge_buffers.h"
 #include "lacerta/attributed_mesh.h"
 #include "lacerta/gltf.h"
 #include "pack/replace_geometry.h"

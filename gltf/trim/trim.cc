@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "document/buffer_edit.h"
+#include "document/merge_buffers.h"
 #include "document/embed_images.h"
 #include "document/gltf_document.h"
 #include "extension/progressive.h"

@@ -2,7 +2,7 @@
 #include <set>
 
 #include "document/accessor.h"
-#include "document/buffer_edit.h"
+#include "document/view_references.h"
 #include "document/gltf_document.h"
 #include "document/place.h"
 #include "extension/progressive.h"

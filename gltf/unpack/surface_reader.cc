@@ -8,7 +8,7 @@
 
 #include "decoder/smooth_normals.h"
 #include "document/accessor.h"
-#include "document/buffer_edit.h"
+#include "document/view_references.h"
 #include "document/draco_primitive.h"
 
 namespace lacerta {

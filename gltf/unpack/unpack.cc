@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "document/buffer_edit.h"
+#include "document/merge_buffers.h"
 #include "document/embed_images.h"
 #include "document/gltf_document.h"
 #include "document/place.h"

@@ -9,6 +9,7 @@
 
 #include "document/accessor.h"
 #include "document/buffer_edit.h"
+#include "document/merge_buffers.h"
 #include "document/gltf_document.h"
 #include "lacerta/mesh.h"
 

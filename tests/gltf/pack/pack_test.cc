@@ -390,6 +390,47 @@ TEST(Pack, SharedAccessorsAndInstances) {
             ReadAccessor(ParseGltf(glb, "").value(), 0).value().bytes);
 }
 
+// As some programs write them: all positions of an asset in one view, all indices in another. What is replaced is gone although
+// points, which stay, hold on to both views.
+TEST(Pack, ViewsOfSeveralPrimitivesShrink) {
+  AssetBuilder builder;
+  for (const float x : {0.0f, 3.0f, 6.0f}) builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(13, 22, {x, 0, 0}))}));
+  Json& json = builder.document().json;
+  json["materials"] = {{{"name", "red"}}};  // without extensions whose numbers might be accessors
+  json["meshes"][1]["primitives"][0]["mode"] = 0;
+  std::vector<Bytes> views(2);  // positions, indices
+  for (size_t i = 0; i < json["accessors"].size(); ++i) {
+    Json& accessor = json["accessors"][i];
+    Bytes& view = views[i % 2];
+    const Bytes values = ReadAccessor(builder.document(), i).value().bytes;
+    accessor["bufferView"] = i % 2;
+    accessor["byteOffset"] = view.size();
+    view.insert(view.end(), values.begin(), values.end());
+    view.resize((view.size() + 3) / 4 * 4);
+  }
+  json.erase("bufferViews");
+  for (const Bytes& view : views) AddBufferView(AddBuffer(view, &builder.document()), 0, view.size(), &builder.document());
+  const Bytes glb = builder.Glb();
+  const auto packed = PackGltf(glb, Options(Fallback::kDraco));
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  const GltfDocument before = ParseGltf(glb, "").value(), after = ParseGltf(packed.value().glb, "").value();
+  uint64_t kept = 0, stored = 0;
+  for (const PrimitiveReport& report : packed.value().report.primitives) {
+    if (report.storage != PrimitiveStorage::kUntouched) stored += report.bytes_after;
+  }
+  for (const char* reference : {"POSITION", "indices"}) {
+    const auto values = [&](const GltfDocument& document) {
+      const Json& primitive = document.json["meshes"][1]["primitives"][0];
+      return ReadAccessor(document, std::string(reference) == "indices" ? primitive["indices"] : primitive["attributes"][reference]).value().bytes;
+    };
+    EXPECT_EQ(values(after), values(before));
+    kept += values(before).size();
+  }
+  EXPECT_GT(stored, 0u);
+  EXPECT_GE(after.buffers[0].size(), kept + stored);
+  EXPECT_LE(after.buffers[0].size(), kept + stored + 16);  // aligned
+}
+
 // A ball is worth compressing, but not a box, nor a surface whose every place would need a description that takes more than it saves.
 TEST(Pack, NothingGrowsByItsDescription) {
   const struct {

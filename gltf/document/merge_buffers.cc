@@ -1,0 +1,178 @@
+#include "document/merge_buffers.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "document/buffer_edit.h"
+#include "document/view_references.h"
+
+namespace lacerta {
+namespace {
+
+constexpr uint64_t kAlignment = 4;
+
+// What is needed to show anything, the progressive streams, and images, which a surface can be shown without: the order in
+// which a client that reads a file as it arrives wants them.
+enum class Turn { kNeeded, kStreams, kImage };
+
+std::vector<Turn> TurnsOfViews(const Json& json) {
+  std::vector<Turn> turns(ArraySize(json, "bufferViews"), Turn::kNeeded);
+  const auto set = [&](const Json* object, const char* member, Turn turn) {
+    const std::optional<uint64_t> view = object == nullptr ? std::nullopt : AsIndex(Find(*object, member));
+    if (view.has_value() && *view < turns.size()) turns[static_cast<size_t>(*view)] = turn;
+  };
+  for (uint64_t i = 0; i < ArraySize(json, "images"); ++i) set(FindElement(json, "images", i), "bufferView", Turn::kImage);
+  const Json* extensions = Find(json, "extensions");
+  set(extensions == nullptr ? nullptr : Find(*extensions, "LACERTA_mesh_progressive"), "data", Turn::kStreams);
+  return turns;
+}
+
+struct Interval {
+  uint64_t buffer = 0;
+  uint64_t begin = 0;
+  uint64_t end = 0;
+  Turn turn = Turn::kNeeded;
+  uint64_t moved_to = 0;
+};
+
+// Of two views of the same bytes; bases are seen through views of their own, too.
+Turn TurnOfBoth(Turn a, Turn b) {
+  return a == Turn::kStreams || b == Turn::kStreams ? Turn::kStreams : std::min(a, b);
+}
+
+// Disjoint parts of the buffers that cover all their views, by buffers and then ascending.
+std::vector<Interval> Union(std::vector<Interval> intervals) {
+  std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) {
+    return std::tie(a.buffer, a.begin) < std::tie(b.buffer, b.begin);
+  });
+  std::vector<Interval> merged;
+  for (const Interval& interval : intervals) {
+    if (!merged.empty() && interval.buffer == merged.back().buffer && interval.begin < merged.back().end) {
+      merged.back().end = std::max(merged.back().end, interval.end);
+      merged.back().turn = TurnOfBoth(merged.back().turn, interval.turn);
+    } else {
+      merged.push_back(interval);
+    }
+  }
+  return merged;
+}
+
+// A part of a view, from its beginning.
+struct Range {
+  uint64_t begin = 0;
+  uint64_t end = 0;
+};
+
+// What a part of an accessor refers to, from a multiple of four on, so that all of a view stay aligned to each other.
+// Nothing where that is not inside of the view.
+std::optional<Range> RangeOf(const Json& part, uint64_t size, uint64_t count, const Json& view) {
+  const uint64_t length = AsIndex(Find(view, "byteLength")).value_or(0);
+  const uint64_t offset = AsIndex(Find(part, "byteOffset")).value_or(0);
+  const uint64_t stride = AsIndex(Find(view, "byteStride")).value_or(size);
+  if (size == 0 || count == 0 || stride < size || offset > length || size > length - offset) return std::nullopt;
+  if (count - 1 > (length - offset - size) / stride) return std::nullopt;
+  return Range{offset - offset % kAlignment, offset + (count - 1) * stride + size};
+}
+
+// Of each view what accessors refer to, if nothing else does; empty of those that are needed as a whole.
+std::vector<std::vector<Range>> AccessorRanges(GltfDocument* document) {
+  const uint64_t num_views = ArraySize(document->json, "bufferViews");
+  std::vector<std::vector<Range>> ranges(static_cast<size_t>(num_views));
+  if (!AreViewReferencesKnown(*document)) return ranges;
+  std::vector<uint64_t> num_references(ranges.size(), 0);
+  VisitViewReferences(document->json, [&](const Json& reference) {
+    const std::optional<uint64_t> view = AsIndex(&reference);
+    if (view.has_value() && *view < num_views) ++num_references[static_cast<size_t>(*view)];
+  });
+  VisitAccessorParts(document->json, [&](const Json& part, uint64_t size, uint64_t count) {
+    const std::optional<uint64_t> view = AsIndex(Find(part, "bufferView"));
+    if (!view.has_value() || *view >= num_views) return;
+    const std::optional<Range> range = RangeOf(part, size, count, *FindElement(document->json, "bufferViews", *view));
+    if (range.has_value()) ranges[static_cast<size_t>(*view)].push_back(*range);
+  });
+  for (size_t i = 0; i < ranges.size(); ++i) {
+    if (ranges[i].size() != num_references[i]) ranges[i].clear();
+  }
+  return ranges;
+}
+
+// Where a byte of a buffer is after the move; 0 where no interval holds it.
+uint64_t MovedTo(const std::vector<Interval>& moved, uint64_t buffer, uint64_t offset) {
+  const auto after = std::upper_bound(moved.begin(), moved.end(), std::make_pair(buffer, offset), [](const auto& wanted, const Interval& interval) {
+    return wanted < std::make_pair(interval.buffer, interval.begin);
+  });
+  if (after == moved.begin()) return 0;
+  const Interval& interval = *std::prev(after);
+  return buffer == interval.buffer && offset < interval.end ? interval.moved_to + (offset - interval.begin) : 0;
+}
+
+// The intervals one after the other, by turns; says where they went.
+Bytes Move(const std::vector<Bytes>& buffers, std::vector<Interval>* intervals) {
+  Bytes merged;
+  for (const Turn turn : {Turn::kNeeded, Turn::kStreams, Turn::kImage}) {
+    for (Interval& interval : *intervals) {
+      if (interval.turn != turn) continue;
+      const Bytes& source = buffers[static_cast<size_t>(interval.buffer)];
+      while (merged.size() % kAlignment != interval.begin % kAlignment) merged.push_back(0);
+      interval.moved_to = merged.size();
+      merged.insert(merged.end(), source.begin() + static_cast<std::ptrdiff_t>(interval.begin),
+                    source.begin() + static_cast<std::ptrdiff_t>(interval.end));
+    }
+  }
+  return merged;
+}
+
+}  // namespace
+
+Status MergeBuffers(GltfDocument* document) {
+  const std::vector<Turn> turns = TurnsOfViews(document->json);
+  const std::vector<std::vector<Range>> ranges = AccessorRanges(document);
+  std::vector<Interval> places;  // of the views
+  std::vector<Interval> used;
+  for (size_t i = 0; i < ranges.size(); ++i) {
+    LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(*document, i));
+    const Json& view = *FindElement(document->json, "bufferViews", i);
+    const uint64_t buffer = *AsIndex(Find(view, "buffer")), begin = AsIndex(Find(view, "byteOffset")).value_or(0);
+    places.push_back({buffer, begin, begin + bytes.size(), turns[i]});
+    for (const Range& range : ranges[i]) used.push_back({buffer, begin + range.begin, begin + range.end, turns[i]});
+    if (ranges[i].empty() && !bytes.empty()) used.push_back(places.back());
+  }
+  used = Union(std::move(used));
+  Bytes merged = Move(document->buffers, &used);
+  constexpr uint64_t kRoomForJson = uint64_t{1} << 30;
+  if (merged.size() > std::numeric_limits<uint32_t>::max() - kRoomForJson) {
+    return Unsupported("the result would not fit into a GLB (4 GB); split the asset");
+  }
+  for (size_t i = 0; i < ranges.size(); ++i) {
+    Interval& place = places[i];
+    Range all;  // where the view is after the move
+    all.begin = ranges[i].empty() ? MovedTo(used, place.buffer, place.begin) : merged.size();
+    for (const Range& range : ranges[i]) {
+      const uint64_t begin = MovedTo(used, place.buffer, place.begin + range.begin);
+      all = {std::min(all.begin, begin), std::max(all.end, begin + (range.end - range.begin))};
+    }
+    Json& view = document->json["bufferViews"][i];
+    view["buffer"] = 0;
+    PlaceView(all.begin, &view);
+    if (!ranges[i].empty()) view["byteLength"] = all.end - all.begin;
+    place.moved_to = all.begin;
+  }
+  VisitAccessorParts(document->json, [&](Json& part, uint64_t, uint64_t) {
+    const std::optional<uint64_t> view = AsIndex(Find(part, "bufferView"));
+    if (!view.has_value() || *view >= places.size() || ranges[static_cast<size_t>(*view)].empty()) return;
+    const Interval& place = places[static_cast<size_t>(*view)];
+    const uint64_t offset = place.begin + AsIndex(Find(part, "byteOffset")).value_or(0);
+    PlaceView(MovedTo(used, place.buffer, offset) - place.moved_to, &part);
+  });
+  document->buffers.clear();
+  document->json.erase("buffers");
+  if (!merged.empty()) AddBuffer(std::move(merged), document);
+  return Status();
+}
+
+}  // namespace lacerta

@@ -1,0 +1,87 @@
+#include "document/view_references.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "document/accessor.h"
+
+namespace lacerta {
+namespace {
+
+uint64_t SizeOfComponent(const Json& object) {
+  const StatusOr<ComponentType> type = ParseComponentType(object);
+  return type.ok() ? ComponentSize(type.value()) : 0;
+}
+
+// glTF 2.0 section 3.6.2.4: the columns of matrices begin at multiples of four bytes.
+uint64_t ElementSize(const Json& accessor) {
+  constexpr uint64_t kAlignment = 4;
+  const uint64_t component = SizeOfComponent(accessor);
+  const std::string type = AsString(Find(accessor, "type"));
+  if (type == "SCALAR") return component;
+  const uint64_t order = type.size() == 4 && type[3] >= '2' && type[3] <= '4' ? static_cast<uint64_t>(type[3] - '0') : 0;
+  if (type.rfind("VEC", 0) == 0) return order * component;
+  if (type.rfind("MAT", 0) == 0) return order * ((order * component + kAlignment - 1) / kAlignment * kAlignment);
+  return 0;
+}
+
+}  // namespace
+
+void VisitViewReferences(Json& json, const std::function<void(Json&)>& visit) {
+  if (json.is_array()) {
+    for (Json& element : json) VisitViewReferences(element, visit);
+  } else if (json.is_object()) {
+    for (const auto& [key, value] : json.items()) {
+      if (key == "extras") continue;
+      if (key == "bufferView") {
+        visit(value);
+      } else if (key == "LACERTA_mesh_progressive") {
+        for (const char* member : {"data", "refinements"}) {
+          if (Json* view = Find(value, member); view != nullptr) visit(*view);
+        }
+      } else {
+        VisitViewReferences(value, visit);
+      }
+    }
+  }
+}
+
+bool AreViewReferencesKnown(const GltfDocument& document) {
+  const Json* used = Find(document.json, "extensionsUsed");
+  if (used == nullptr || !used->is_array()) return true;
+  return std::all_of(used->begin(), used->end(), [](const Json& entry) {
+    const std::string name = AsString(&entry);
+    for (const char* prefix : {"KHR_", "LACERTA_", "EXT_texture_", "EXT_mesh_gpu_instancing", "EXT_lights_", "MSFT_"}) {
+      if (name.rfind(prefix, 0) == 0) return true;
+    }
+    return false;
+  });
+}
+
+std::set<uint64_t> ViewsOfAccessor(const GltfDocument& document, uint64_t index) {
+  std::set<uint64_t> views;
+  const Json* accessor = FindElement(document.json, "accessors", index);
+  if (accessor == nullptr) return views;
+  Json copy = *accessor;
+  VisitViewReferences(copy, [&](Json& reference) {
+    if (const std::optional<uint64_t> view = AsIndex(&reference); view.has_value()) views.insert(*view);
+  });
+  return views;
+}
+
+void VisitAccessorParts(Json& json, const std::function<void(Json& part, uint64_t size, uint64_t count)>& visit) {
+  Json* accessors = Find(json, "accessors");
+  if (accessors == nullptr || !accessors->is_array()) return;
+  for (Json& accessor : *accessors) {
+    const uint64_t size = ElementSize(accessor);
+    if (Find(accessor, "bufferView") != nullptr) visit(accessor, size, AsIndex(Find(accessor, "count")).value_or(0));
+    Json* sparse = Find(accessor, "sparse");
+    if (sparse == nullptr) continue;
+    const uint64_t count = AsIndex(Find(*sparse, "count")).value_or(0);
+    if (Json* indices = Find(*sparse, "indices"); indices != nullptr) visit(*indices, SizeOfComponent(*indices), count);
+    if (Json* values = Find(*sparse, "values"); values != nullptr) visit(*values, size, count);
+  }
+}
+
+}  // namespace lacerta
