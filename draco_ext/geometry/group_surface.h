@@ -20,7 +20,7 @@ class GroupSurface {
     float squared_distance = 0;
   };
 
-  static constexpr size_t kMostNear = 49;  // points that PointsNear gives: more faces are not told apart, so that the work is bounded
+  static constexpr size_t kMostNear = 49;  // points that PointsNear gives, the nearest: more faces are not told apart, so that the work is bounded
 
   // mesh: one that CheckAttributedMesh accepts; must outlive the surface.
   explicit GroupSurface(const AttributedMesh& mesh);

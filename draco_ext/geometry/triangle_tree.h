@@ -60,7 +60,7 @@ class TriangleTree {
   ClosestPointResult ClosestPointNear(const Vec3f& p, uint32_t hint) const;
 
   // Appends to *points, in no particular order, for each face not farther from p than max_squared_distance its point closest to p,
-  // but for no more than `max_points` faces: any of them where there are more.
+  // but for no more than `max_points` faces: the nearest where there are more.
   void PointsNear(const Vec3f& p, float max_squared_distance, size_t max_points, std::vector<ClosestPointResult>* points) const;
 
   // Appends to *hits, in no particular order, where the line origin + t * direction meets the mesh with t_min <= t <=
@@ -121,10 +121,10 @@ class TriangleTree {
   void TestSlot(uint32_t slot, Search* search) const;
   ClosestPointResult Finish(const Search& search) const;
   void Traverse(Search* search) const;
-  // Calls visit(first slot, end slot) for the leaves whose boxes are less than that far from a point, relative to the origin of the tree, until it says
-  // false.
+  // Calls visit(first slot, count) for the leaves whose boxes are less than that far from a point, relative to the origin of the tree, nearer ones
+  // mostly first. What visit makes of the distance is heeded at once.
   template <typename Visit>
-  void VisitLeaves(const Vec3f& point, float max_squared_distance, const Visit& visit) const;
+  void VisitLeaves(const Vec3f& point, const float& max_squared_distance, const Visit& visit) const;
 
   std::vector<Node> nodes_;       // the first is the root; empty when there is no triangle
   std::vector<Corners> corners_;  // per slot

@@ -132,36 +132,40 @@ void TriangleTree::TestSlot(uint32_t slot, Search* search) const {
   }
 }
 
-void TriangleTree::Traverse(Search* search) const {
+template <typename Visit>
+void TriangleTree::VisitLeaves(const Vec3f& point, const float& max_squared_distance, const Visit& visit) const {
   if (nodes_.empty()) return;
-  const Vec3f local = search->p - origin_;
   StackEntry stack[kStackSize];
   int size = 0;
   uint32_t current = 0;
   while (true) {
     const Node& node = nodes_[current];
     float d2[kWidth];
-    node.SquaredDistances(local, d2);
+    node.SquaredDistances(point, d2);
     // The children in reach go on the stack, the nearest on top.
     const int bottom = size;
     for (int k = 0; k < kWidth; ++k) {
-      if (!(d2[k] < search->box_bound2)) continue;
+      if (!(d2[k] < max_squared_distance)) continue;
       int at = size++;
       for (; at > bottom && stack[at - 1].squared_distance < d2[k]; --at) stack[at] = stack[at - 1];
       stack[at] = {d2[k], node.child[k], node.count[k]};
     }
-    // Leaves are searched as they come up; the first node in reach is next.
+    // Leaves are visited as they come up; the first node in reach is next.
     while (true) {
       if (size == 0) return;
       const StackEntry& top = stack[--size];
-      if (!(top.squared_distance < search->box_bound2)) continue;
+      if (!(top.squared_distance < max_squared_distance)) continue;
       if (top.count == 0) {
         current = top.child;
         break;
       }
-      TestLeaf(top.child, top.count, search);
+      visit(top.child, top.count);
     }
   }
+}
+
+void TriangleTree::Traverse(Search* search) const {
+  VisitLeaves(search->p - origin_, search->box_bound2, [&](uint32_t first, uint32_t count) { TestLeaf(first, count, search); });
 }
 
 ClosestPointResult TriangleTree::Finish(const Search& search) const {
@@ -199,64 +203,55 @@ ClosestPointResult TriangleTree::ClosestPointNear(const Vec3f& p, uint32_t hint)
   return Finish(search);
 }
 
-template <typename Visit>
-void TriangleTree::VisitLeaves(const Vec3f& point, float max_squared_distance, const Visit& visit) const {
-  uint32_t stack[kStackSize];
-  int size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const Node& node = nodes_[stack[--size]];
-    float d2[kWidth];
-    node.SquaredDistances(point, d2);
-    for (int k = 0; k < kWidth; ++k) {
-      if (!(d2[k] < max_squared_distance)) continue;
-      if (node.count[k] == 0) {
-        stack[size++] = node.child[k];
-      } else if (!visit(node.child[k], node.child[k] + node.count[k])) {
-        return;
-      }
-    }
-  }
-}
-
 void TriangleTree::PointsNear(const Vec3f& p, float max_squared_distance, size_t max_points,
                               std::vector<ClosestPointResult>* points) const {
-  if (nodes_.empty() || !IsUsable(p) || !(max_squared_distance >= 0.0f)) return;
+  if (max_points == 0 || !IsUsable(p) || !(max_squared_distance >= 0.0f)) return;
   Search search;
   search.p = p;
   search.pd = Vec3Cast<double>(p);
   search.SetBound(max_squared_distance);
-  const size_t most = points->size() + max_points;
-  VisitLeaves(p - origin_, search.box_bound2, [&](uint32_t first_slot, uint32_t end_slot) {
+  // A heap, the farthest on top, which bounds the search as soon as there are enough.
+  const auto first_point = static_cast<std::ptrdiff_t>(points->size());
+  const auto is_nearer = [](const ClosestPointResult& a, const ClosestPointResult& b) {
+    return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance : a.point.face < b.point.face;
+  };
+  const auto add = [&](const ClosestPointResult& point) {
+    const auto heap = points->begin() + first_point;
+    if (static_cast<size_t>(points->end() - heap) == max_points) {
+      if (!is_nearer(point, *heap)) return;
+      std::pop_heap(heap, points->end(), is_nearer);
+      points->pop_back();
+    }
+    points->push_back(point);
+    std::push_heap(points->begin() + first_point, points->end(), is_nearer);
+    if (points->size() - static_cast<size_t>(first_point) == max_points) search.SetBound(static_cast<double>((*points)[static_cast<size_t>(first_point)].squared_distance));
+  };
+  VisitLeaves(p - origin_, search.box_bound2, [&](uint32_t first_slot, uint32_t count) {
     std::array<float, kLeafSize> bounds{};
-    if (AreWorthBounds(first_slot, end_slot - first_slot)) LowerBounds(first_slot, p, &bounds);
-    for (uint32_t slot = first_slot; slot < end_slot; ++slot) {
-      if (bounds[slot - first_slot] >= search.box_bound2) continue;
-      if (points->size() == most) return false;
-      const Corners& t = corners_[slot];
+    if (AreWorthBounds(first_slot, count)) LowerBounds(first_slot, p, &bounds);
+    for (uint32_t k = 0; k < count; ++k) {
+      if (bounds[k] >= search.box_bound2) continue;
+      const Corners& t = corners_[first_slot + k];
       if (ClosestOnTriangle(search.pd, Vec3Cast<double>(t[0]), Vec3Cast<double>(t[1]), Vec3Cast<double>(t[2]), search.bound2,
                             &search.best) &&
           search.best.squared_distance <= search.bound2) {
-        search.slot = slot;
-        points->push_back(Finish(search));
+        search.slot = first_slot + k;
+        add(Finish(search));
       }
     }
-    return true;
   });
 }
 
 double TriangleTree::Crowding() const {
   if (nodes_.empty()) return 0.0;
   constexpr size_t kMostPoints = 256;
+  constexpr float kInside = FLT_MIN;
   const size_t num_points = std::min(kMostPoints, corners_.size());
   uint64_t faces = 0;
   for (size_t i = 0; i < num_points; ++i) {
     const Corners& t = corners_[i * corners_.size() / num_points];
     const Vec3f point = (t[0] - origin_) * (1 / 3.0f) + (t[1] - origin_) * (1 / 3.0f) + (t[2] - origin_) * (1 / 3.0f);
-    VisitLeaves(point, FLT_MIN, [&](uint32_t first_slot, uint32_t end_slot) {
-      faces += end_slot - first_slot;
-      return true;
-    });
+    VisitLeaves(point, kInside, [&](uint32_t, uint32_t count) { faces += count; });
   }
   return static_cast<double>(faces) / static_cast<double>(num_points);
 }

@@ -143,8 +143,9 @@ TEST(AttributeDistanceTest, AStretchAlongTheSurfaceIsNotMistakenForASeam) {
   EXPECT_NEAR(Distance(Weld({soup}), Weld({shifted}), options).Worst(kTexture).rms, 0.512, 1e-3);
 }
 
-TEST(AttributeDistanceTest, BackAndFrontOfASheetAreToldApart) {
-  VertexSoup soup = shapes::TexturedGrid(4, 4), back = soup;
+// A square of so many times so many quads, with another one on its back that has a texture of its own.
+AttributedMesh Sheet(uint32_t quads) {
+  VertexSoup soup = shapes::TexturedGrid(quads, quads), back = soup;
   for (Triangle& t : back.triangles) std::swap(t[1], t[2]);
   for (float& x : back.attributes[kTexture].values) x += 5;
   for (float& x : back.attributes[kNormal].values) x = -x;
@@ -154,10 +155,24 @@ TEST(AttributeDistanceTest, BackAndFrontOfASheetAreToldApart) {
   for (size_t a = 0; a < 2; ++a) {
     soup.attributes[a].values.insert(soup.attributes[a].values.end(), back.attributes[a].values.begin(), back.attributes[a].values.end());
   }
-  const AttributedMesh mesh = Weld({soup});
+  return Weld({soup});
+}
+
+TEST(AttributeDistanceTest, BackAndFrontOfASheetAreToldApart) {
+  const AttributedMesh mesh = Sheet(4);
   EXPECT_LT(Distance(mesh, mesh).Worst(kTexture).max, 0.01);
   EXPECT_LT(Distance(mesh, mesh).Worst(kNormal).max, 0.01);
   EXPECT_EQ(Distance(mesh, mesh).backward_turned, 0);
+}
+
+TEST(AttributeDistanceTest, BackAndFrontAreToldApartHoweverSmallTheTriangles) {
+  const AttributedMesh mesh = Sheet(60);
+  AttributeDistanceOptions options;
+  options.seam_distance = 0.1;  // within which there are hundreds of triangles
+  const AttributeDistance distance = Distance(mesh, mesh, options);
+  EXPECT_LT(distance.Worst(kTexture).max, 0.01);
+  EXPECT_LT(distance.Worst(kNormal).max, 0.01);
+  EXPECT_EQ(distance.backward_turned, 0);
 }
 
 TEST(AttributeDistanceTest, AreaThatLooksAwayIsCounted) {

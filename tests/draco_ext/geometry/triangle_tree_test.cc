@@ -121,11 +121,18 @@ TEST(TriangleTree, PointsNearAreThoseOfAllFacesInReach) {
         const float expected = TriangleTree(one).ClosestPoint(p).squared_distance;
         EXPECT_EQ(distance2[f], expected <= kReach2 ? expected : 2 * kReach2);
       }
-      if (points.size() < 2) continue;
-      const size_t all = points.size();
-      points.clear();
-      tree.PointsNear(p, kReach2, all - 1, &points);
-      EXPECT_EQ(points.size(), all - 1);
+      std::vector<float> nearest;
+      for (const ClosestPointResult& result : points) nearest.push_back(result.squared_distance);
+      std::sort(nearest.begin(), nearest.end());
+      for (const size_t most : {size_t{0}, size_t{1}, points.size() / 2, points.size() - 1}) {
+        if (most >= points.size()) continue;
+        std::vector<ClosestPointResult> fewer(1);  // what is there stays
+        tree.PointsNear(p, kReach2, most, &fewer);
+        ASSERT_EQ(fewer.size(), 1 + most);
+        EXPECT_EQ(fewer[0].point.face, SurfacePoint::kNone);
+        std::sort(fewer.begin() + 1, fewer.end(), [](const auto& x, const auto& y) { return x.squared_distance < y.squared_distance; });
+        for (size_t i = 0; i < most; ++i) EXPECT_EQ(fewer[1 + i].squared_distance, nearest[i]);
+      }
     }
   }
 }
