@@ -31,12 +31,12 @@ bool IsGlb(Span<const uint8_t> bytes);
 // Reads a .glb (by its magic) or .gltf. External buffers are looked for in `folder`; one that holds nothing but
 // refinements of LACERTA_mesh_progressive may be missing or short, as if it had been trimmed. A GLB whose BIN chunk was cut off
 // is accepted with the bytes that are there; what refers to the missing ones fails when it is looked at. Every
-// "byteLength" is held against the bytes that are really there. bufferViews under EXT_meshopt_compression are decoded and
-// the extension is taken away. Fails with kInvalidData, kUnsupported (version) or what LoadUri and DecodeMeshoptViews
+// "byteLength" is held against the bytes that are really there. bufferViews under EXT_meshopt_compression are decoded
+// (DecodeMeshoptViews). Fails with kInvalidData, kUnsupported (version) or what LoadUri and DecodeMeshoptViews
 // return.
 StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& folder);
 
-// A GLB of the document. Its first buffer is in it; others must have a URI.
+// A GLB of the document. Its first buffer is in it; others must have a URI, or be what MergeBuffers leaves out.
 Bytes FormatGlb(const GltfDocument& document);
 
 // The bytes of bufferViews[index]. Fails with kInvalidData when the view or its range is not there.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "document/buffer_edit.h"
+#include "document/meshopt.h"
 #include "document/view_references.h"
 
 namespace lacerta {
@@ -127,18 +128,76 @@ Bytes Move(const std::vector<Bytes>& buffers, std::vector<Interval>* intervals) 
   return merged;
 }
 
+uint64_t CoveredBytes(std::vector<Range> ranges) {
+  std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.begin < b.begin; });
+  uint64_t sum = 0, end = 0;
+  for (const Range& range : ranges) {
+    if (range.end > end) sum += range.end - std::max(range.begin, end);
+    end = std::max(end, range.end);
+  }
+  return sum;
+}
+
+// Of each view that came compressed where its compressed bytes are, if they are fewer than those that are needed of what
+// they decode to; these are whole then. The others are compressed no more.
+std::vector<std::optional<CompressedBytes>> ChooseCompressed(std::vector<std::vector<Range>>* ranges, GltfDocument* document) {
+  std::vector<std::optional<CompressedBytes>> chosen(ranges->size());
+  for (size_t i = 0; i < chosen.size(); ++i) {
+    std::vector<Range>& parts = (*ranges)[i];
+    Json& view = document->json["bufferViews"][i];
+    chosen[i] = FindCompressedBytes(*document, i);
+    const uint64_t needed = parts.empty() ? AsIndex(Find(view, "byteLength")).value_or(0) : CoveredBytes(parts);
+    if (chosen[i].has_value() && chosen[i]->length < needed) {
+      parts.clear();
+    } else {
+      chosen[i].reset();
+      DropMeshopt(&view);
+    }
+  }
+  return chosen;
+}
+
+// What views that stay compressed refer to beside: a buffer without bytes in the file, as their extension asks for.
+class FallbackBuffer {
+ public:
+  // Returns where they would be.
+  uint64_t Add(Span<const uint8_t> decoded, const char* extension) {
+    bytes_.resize((bytes_.size() + kAlignment - 1) / kAlignment * kAlignment);
+    const uint64_t offset = bytes_.size();
+    bytes_.insert(bytes_.end(), decoded.begin(), decoded.end());
+    extensions_[extension] = {{"fallback", true}};
+    return offset;
+  }
+  void AddTo(GltfDocument* document) && {
+    if (bytes_.empty()) return;
+    const uint64_t index = AddBuffer(std::move(bytes_), document);
+    document->json["buffers"][static_cast<size_t>(index)]["extensions"] = std::move(extensions_);
+  }
+
+ private:
+  Bytes bytes_;
+  Json extensions_ = Json::object();
+};
+
 }  // namespace
 
 Status MergeBuffers(GltfDocument* document) {
   const std::vector<Turn> turns = TurnsOfViews(document->json);
-  const std::vector<std::vector<Range>> ranges = AccessorRanges(document);
+  std::vector<std::vector<Range>> ranges = AccessorRanges(document);
+  const std::vector<std::optional<CompressedBytes>> compressed = ChooseCompressed(&ranges, document);
   std::vector<Interval> places;  // of the views
   std::vector<Interval> used;
+  FallbackBuffer fallback;
   for (size_t i = 0; i < ranges.size(); ++i) {
     LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(*document, i));
     const Json& view = *FindElement(document->json, "bufferViews", i);
     const uint64_t buffer = *AsIndex(Find(view, "buffer")), begin = AsIndex(Find(view, "byteOffset")).value_or(0);
     places.push_back({buffer, begin, begin + bytes.size(), turns[i]});
+    if (compressed[i].has_value()) {
+      used.push_back({compressed[i]->buffer, compressed[i]->offset, compressed[i]->offset + compressed[i]->length, turns[i]});
+      places.back().moved_to = fallback.Add(bytes, compressed[i]->extension);
+      continue;
+    }
     for (const Range& range : ranges[i]) used.push_back({buffer, begin + range.begin, begin + range.end, turns[i]});
     if (ranges[i].empty() && !bytes.empty()) used.push_back(places.back());
   }
@@ -150,13 +209,19 @@ Status MergeBuffers(GltfDocument* document) {
   }
   for (size_t i = 0; i < ranges.size(); ++i) {
     Interval& place = places[i];
+    Json& view = document->json["bufferViews"][i];
+    if (compressed[i].has_value()) {
+      PlaceCompressedBytes({compressed[i]->extension, 0, MovedTo(used, compressed[i]->buffer, compressed[i]->offset), compressed[i]->length}, &view);
+      view["buffer"] = 1;
+      PlaceView(place.moved_to, &view);
+      continue;
+    }
     Range all;  // where the view is after the move
     all.begin = ranges[i].empty() ? MovedTo(used, place.buffer, place.begin) : merged.size();
     for (const Range& range : ranges[i]) {
       const uint64_t begin = MovedTo(used, place.buffer, place.begin + range.begin);
       all = {std::min(all.begin, begin), std::max(all.end, begin + (range.end - range.begin))};
     }
-    Json& view = document->json["bufferViews"][i];
     view["buffer"] = 0;
     PlaceView(all.begin, &view);
     if (!ranges[i].empty()) view["byteLength"] = all.end - all.begin;
@@ -172,6 +237,8 @@ Status MergeBuffers(GltfDocument* document) {
   document->buffers.clear();
   document->json.erase("buffers");
   if (!merged.empty()) AddBuffer(std::move(merged), document);
+  std::move(fallback).AddTo(document);
+  DeclareMeshopt(document);
   return Status();
 }
 

@@ -5,6 +5,7 @@
 #endif
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -25,10 +26,9 @@ const Json* ExtensionOf(const Json& object, const char** name) {
   return nullptr;
 }
 
-void DropExtension(const char* name, Json* object) {
-  Json& extensions = (*object)["extensions"];
-  extensions.erase(name);
-  if (extensions.empty()) object->erase("extensions");
+bool IsRequired(const Json& json, const char* name) {
+  const Json* required = Find(json, "extensionsRequired");
+  return required != nullptr && required->is_array() && std::find(required->begin(), required->end(), name) != required->end();
 }
 
 #ifdef LACERTA_HAVE_MESHOPTIMIZER
@@ -151,7 +151,7 @@ Status ReplaceView(uint64_t index, uint64_t* left, GltfDocument* document) {
   view["buffer"] = buffer;
   view.erase("byteOffset");
   view["byteLength"] = length;
-  DropExtension(name, &view);
+  if (!IsRequired(document->json, name)) DropMeshopt(&view);
   return Status();
 }
 
@@ -164,15 +164,55 @@ Status DecodeMeshoptViews(GltfDocument* document) {
     if (!status.ok()) return status.WithContext("bufferView " + std::to_string(i));
   }
   for (uint64_t i = 0; i < ArraySize(document->json, "buffers"); ++i) {
-    const char* name = nullptr;
-    Json& buffer = document->json["buffers"][static_cast<size_t>(i)];
-    if (ExtensionOf(buffer, &name) != nullptr) DropExtension(name, &buffer);
+    DropMeshopt(&document->json["buffers"][static_cast<size_t>(i)]);
   }
-  for (const char* name : kNames) {
-    RemoveExtension("extensionsUsed", name, document);
-    RemoveExtension("extensionsRequired", name, document);
-  }
+  DeclareMeshopt(document);
   return Status();
+}
+
+std::optional<CompressedBytes> FindCompressedBytes(const GltfDocument& document, uint64_t index) {
+  CompressedBytes place;
+  const Json* view = FindElement(document.json, "bufferViews", index);
+  const Json* extension = view == nullptr ? nullptr : ExtensionOf(*view, &place.extension);
+  if (extension == nullptr) return std::nullopt;
+  place.buffer = AsIndex(Find(*extension, "buffer")).value_or(document.buffers.size());
+  place.offset = AsIndex(Find(*extension, "byteOffset")).value_or(0);
+  place.length = AsIndex(Find(*extension, "byteLength")).value_or(0);
+  if (place.buffer >= document.buffers.size()) return std::nullopt;
+  const uint64_t size = document.buffers[static_cast<size_t>(place.buffer)].size();
+  if (place.offset > size || place.length > size - place.offset) return std::nullopt;
+  return place;
+}
+
+double CompressedShare(const GltfDocument& document, uint64_t index) {
+  const std::optional<CompressedBytes> compressed = FindCompressedBytes(document, index);
+  if (!compressed.has_value()) return 1.0;
+  const uint64_t decoded = AsIndex(Find(*FindElement(document.json, "bufferViews", index), "byteLength")).value_or(0);
+  return decoded == 0 ? 1.0 : static_cast<double>(compressed->length) / static_cast<double>(decoded);
+}
+
+void PlaceCompressedBytes(const CompressedBytes& place, Json* view) {
+  Json& extension = (*view)["extensions"][place.extension];
+  extension["buffer"] = place.buffer;
+  PlaceView(place.offset, &extension);
+}
+
+void DropMeshopt(Json* object) {
+  Json* extensions = Find(*object, "extensions");
+  if (extensions == nullptr) return;
+  for (const char* name : kNames) extensions->erase(name);
+  if (extensions->empty()) object->erase("extensions");
+}
+
+void DeclareMeshopt(GltfDocument* document) {
+  std::set<std::string> used;
+  for (uint64_t i = 0; i < ArraySize(document->json, "bufferViews"); ++i) {
+    const char* name = nullptr;
+    if (ExtensionOf(*FindElement(document->json, "bufferViews", i), &name) != nullptr) used.insert(name);
+  }
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    for (const char* name : kNames) used.count(name) > 0 ? AddExtension(list, name, document) : RemoveExtension(list, name, document);
+  }
 }
 
 }  // namespace lacerta

@@ -52,7 +52,7 @@ bool AreViewReferencesKnown(const GltfDocument& document) {
   if (used == nullptr || !used->is_array()) return true;
   return std::all_of(used->begin(), used->end(), [](const Json& entry) {
     const std::string name = AsString(&entry);
-    for (const char* prefix : {"KHR_", "LACERTA_", "EXT_texture_", "EXT_mesh_gpu_instancing", "EXT_lights_", "MSFT_"}) {
+    for (const char* prefix : {"KHR_", "LACERTA_", "EXT_texture_", "EXT_mesh_gpu_instancing", "EXT_lights_", "EXT_meshopt_", "MSFT_"}) {
       if (name.rfind(prefix, 0) == 0) return true;
     }
     return false;

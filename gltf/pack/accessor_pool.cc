@@ -36,7 +36,7 @@ void VisitExtensions(const Json& json, const std::function<void(const Json&)>& v
 
 // Extensions known to refer to no accessor of their own.
 bool NamesNoAccessors(const std::string& name) {
-  for (const char* prefix : {"KHR_", "LACERTA_", "MSFT_", "EXT_texture_", "EXT_lights_"}) {
+  for (const char* prefix : {"KHR_", "LACERTA_", "MSFT_", "EXT_texture_", "EXT_lights_", "EXT_meshopt_"}) {
     if (name.rfind(prefix, 0) == 0) return true;
   }
   return false;

@@ -80,7 +80,7 @@ uint64_t FamilyContext::BytesBefore() const {
   uint64_t sum = 0;
   for (const size_t member : members()) {
     const Source& source = scene->sources[member];
-    sum += source.geometries.size() * (source.stored_bytes + BytesOfTargets(source.targets));
+    sum += source.geometries.size() * source.stored_bytes;
   }
   return sum;
 }

@@ -275,7 +275,7 @@ PrimitivePlan UntouchedPlan(const PackedScene& scene, size_t index) {
   plan.report.primitive = source.places[0].primitive;
   plan.report.name = AsString(Find(*FindElement(scene.document->json, "meshes", source.places[0].mesh), "name"));
   plan.report.reason = source.reason;
-  plan.report.bytes_before = plan.report.bytes_after = source.geometries.size() * (source.stored_bytes + BytesOfTargets(source.targets));
+  plan.report.bytes_before = plan.report.bytes_after = source.geometries.size() * source.stored_bytes;
   return plan;
 }
 

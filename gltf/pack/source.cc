@@ -5,6 +5,7 @@
 
 #include "document/buffer_edit.h"
 #include "document/lattice.h"
+#include "document/meshopt.h"
 #include "document/normals.h"
 #include "extension/progressive.h"
 #include "pack/repair.h"
@@ -12,17 +13,36 @@
 namespace lacerta {
 namespace {
 
-uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primitive& primitive) {
+// Of an accessor that takes `bytes`, or where its view is compressed its part of that.
+uint64_t SizeOf(const GltfDocument& document, const Json* reference, const AccessorData& data, uint64_t bytes) {
+  const Json* accessor = FindElement(document.json, "accessors", AsIndex(reference).value_or(~uint64_t{0}));
+  const std::optional<uint64_t> view = accessor == nullptr ? std::nullopt : AsIndex(Find(*accessor, "bufferView"));
+  if (!view.has_value() || !FindCompressedBytes(document, *view).has_value()) return bytes;
+  const uint64_t size = data.components * ComponentSize(data.type);
+  const uint64_t stride = AsIndex(Find(*FindElement(document.json, "bufferViews", *view), "byteStride")).value_or(size);
+  return static_cast<uint64_t>(CompressedShare(document, *view) * static_cast<double>(data.count * stride));
+}
+
+uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primitive& primitive, const std::vector<MorphTarget>& targets) {
+  uint64_t sum = 0;
+  for (size_t t = 0; t < targets.size(); ++t) {
+    const Json& references = *FindElement(json, "targets", t);
+    for (const Attribute& attribute : targets[t]) {
+      sum += SizeOf(document, Find(references, attribute.name.c_str()), attribute.data, StoredSize(attribute.data));
+    }
+  }
   if (const Json* draco = PrimitiveExtension(json, kDracoName); draco != nullptr) {
     const StatusOr<Span<const uint8_t>> bytes =
         BufferViewBytes(document, AsIndex(Find(*draco, "bufferView")).value_or(0));
-    return bytes.ok() ? bytes.value().size() : 0;
+    return sum + (bytes.ok() ? bytes.value().size() : 0);
   }
-  uint64_t sum = 0;
-  for (const Attribute& attribute : primitive.attributes) sum += attribute.data.bytes.size();
-  if (const std::optional<uint64_t> index = AsIndex(Find(json, "indices")); index.has_value()) {
-    const StatusOr<AccessorData> indices = ReadAccessor(document, *index);
-    if (indices.ok()) sum += indices.value().bytes.size();
+  for (const Attribute& attribute : primitive.attributes) {
+    const Json* reference = Find(*Find(json, "attributes"), attribute.name.c_str());
+    sum += SizeOf(document, reference, attribute.data, attribute.data.bytes.size());
+  }
+  if (const Json* index = Find(json, "indices"); AsIndex(index).has_value()) {
+    const StatusOr<AccessorData> indices = ReadAccessor(document, *AsIndex(index));
+    if (indices.ok()) sum += SizeOf(document, index, indices.value(), indices.value().bytes.size());
   }
   return sum;
 }
@@ -60,7 +80,7 @@ Status ReadSource(const GltfDocument& document, const Json& json, Source* source
     if (!status.ok()) return status.code() == StatusCode::kUnsupported ? Status() : status;
   }
   LACERTA_RETURN_IF_ERROR(CheckFinite(json, primitive.value(), targets.value()));
-  source->stored_bytes = StoredBytes(document, json, primitive.value());
+  source->stored_bytes = StoredBytes(document, json, primitive.value(), targets.value());
   source->primitive = std::move(primitive).value();
   source->targets = std::move(targets).value();
   RoundAnew(&*source->primitive);

@@ -7,8 +7,10 @@
 #endif
 
 #include <cstring>
+#include <optional>
 
 #include "document/buffer_edit.h"
+#include "document/merge_buffers.h"
 #include "gltf/test_assets.h"
 #include "lacerta/gltf.h"
 
@@ -69,10 +71,11 @@ GltfDocument Compressed(const TriangleMesh& mesh, const char* name) {
   return document;
 }
 
-TEST(Meshopt, DecodesViewsAndForgetsTheExtension) {
+TEST(Meshopt, DecodesViewsAndForgetsTheExtensionWhereACopyIsNotCompressed) {
   const TriangleMesh mesh = testing::WavySphere(8, 12);
   for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
     GltfDocument document = Compressed(mesh, name);
+    document.json.erase("extensionsRequired");
     const Status status = DecodeMeshoptViews(&document);
     ASSERT_TRUE(status.ok()) << status.message();
     EXPECT_EQ(document.json.dump().find("meshopt"), std::string::npos);
@@ -81,6 +84,72 @@ TEST(Meshopt, DecodesViewsAndForgetsTheExtension) {
     EXPECT_EQ(positions.bytes, MakeFloatAccessor(mesh.positions).bytes);
     EXPECT_EQ(ReadAccessor(document, 1).value().count, 3 * mesh.triangles.size());
   }
+}
+
+Bytes CompressedAt(const GltfDocument& document, uint64_t view) {
+  const std::optional<CompressedBytes> place = FindCompressedBytes(document, view);
+  if (!place.has_value()) return {};
+  const auto begin = document.buffers[static_cast<size_t>(place->buffer)].begin() + static_cast<std::ptrdiff_t>(place->offset);
+  return Bytes(begin, begin + static_cast<std::ptrdiff_t>(place->length));
+}
+
+TEST(Meshopt, WhatStaysIsStoredAsItCame) {
+  const TriangleMesh mesh = testing::WavySphere(8, 12);
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+    GltfDocument document = Compressed(mesh, name);
+    const Bytes positions = CompressedAt(document, 0), indices = CompressedAt(document, 1);
+    ASSERT_TRUE(DecodeMeshoptViews(&document).ok());
+    EXPECT_LT(CompressedShare(document, 1), 0.5);
+    EXPECT_EQ(ReadAccessor(document, 0).value().bytes, MakeFloatAccessor(mesh.positions).bytes);
+    for (int round = 0; round < 2; ++round) {
+      ASSERT_TRUE(MergeBuffers(&document).ok());
+      const Bytes glb = FormatGlb(document);
+      EXPECT_LT(glb.size(), positions.size() + indices.size() + 1500);  // JSON
+      document = ParseGltf(glb, "").value();
+      EXPECT_EQ(CompressedAt(document, 0), positions);
+      EXPECT_EQ(CompressedAt(document, 1), indices);
+      EXPECT_EQ(document.json["extensionsRequired"], Json::array({name}));
+      EXPECT_EQ(ReadAccessor(document, 0).value().bytes, MakeFloatAccessor(mesh.positions).bytes);
+      EXPECT_EQ(ReadAccessor(document, 1).value().count, 3 * mesh.triangles.size());
+    }
+  }
+}
+
+TEST(Meshopt, OfWhatIsMostlyGoneTheRestIsStoredUncompressed) {
+  const TriangleMesh mesh = testing::WavySphere(8, 12);
+  GltfDocument document = Compressed(mesh, "EXT_meshopt_compression");
+  ASSERT_TRUE(DecodeMeshoptViews(&document).ok());
+  const Bytes before = ReadAccessor(document, 0).value().bytes;
+  document.json["accessors"][0]["count"] = 3;
+  document.json["accessors"][0]["byteOffset"] = 24;
+  ASSERT_TRUE(MergeBuffers(&document).ok());
+  const GltfDocument after = ParseGltf(FormatGlb(document), "").value();
+  EXPECT_FALSE(FindCompressedBytes(after, 0).has_value());
+  EXPECT_TRUE(FindCompressedBytes(after, 1).has_value());
+  EXPECT_EQ(after.json["bufferViews"][0]["byteLength"], 36);
+  EXPECT_EQ(ReadAccessor(after, 0).value().bytes, Bytes(before.begin() + 24, before.begin() + 60));
+}
+
+TEST(Meshopt, NothingIsDeclaredThatNoViewHas) {
+  GltfDocument document = Compressed(testing::WavySphere(8, 12), "EXT_meshopt_compression");
+  ASSERT_TRUE(DecodeMeshoptViews(&document).ok());
+  document.json["accessors"] = Json::array();
+  DropUnusedViews({0, 1}, &document);
+  ASSERT_TRUE(MergeBuffers(&document).ok());
+  EXPECT_EQ(document.json.dump().find("meshopt"), std::string::npos);
+}
+
+// A family is held to the bytes that it takes compressed, and what stays is not decoded for good.
+TEST(Meshopt, NoAssetGrows) {
+  GltfDocument document = Compressed(testing::WavySphere(8, 12), "EXT_meshopt_compression");
+  document.json["meshes"][0]["primitives"][0]["mode"] = 0;
+  ASSERT_TRUE(DecodeMeshoptViews(&document).ok());
+  ASSERT_TRUE(MergeBuffers(&document).ok());
+  const Bytes glb = FormatGlb(document);
+  const auto packed = PackGltf(glb, {});
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  EXPECT_EQ(packed.value().report.primitives[0].storage, PrimitiveStorage::kUntouched);
+  EXPECT_EQ(packed.value().glb, glb);
 }
 
 TEST(Meshopt, RefusesWhatItsStreamCannotHold) {
