@@ -59,12 +59,14 @@ SampledErrors ErrorsAtSamples(const GroupSurface& from, const GroupSurface& to, 
           to.PointsNear(from.mesh().GroupOf(face), sample.position, from.NormalOf(face), options.seam_distance * diagonal, &hint, &near);
       result.turned[i] = !nearness.agrees;
       result.squared_distances[block] += static_cast<double>(nearness.squared_distance);
+      const bool same_sides = !to_attributes.empty() && to.AreSidesOfAllAttributes(near);
+      if (same_sides) to.KeepOnePerSide(to_attributes[0], &near);
       for (size_t a = 0; a < from_attributes.size(); ++a) {
         if (from_attributes[a].corners[face][0] == MeshAttribute::kNoValue || near.empty()) continue;
         if (to_attributes[a].corners[near[0].face][0] == MeshAttribute::kNoValue) continue;
         InterpolateValue(from_attributes[a], here, value.data());
         sides = near;
-        to.KeepOnePerSide(to_attributes[a], &sides);
+        if (!same_sides) to.KeepOnePerSide(to_attributes[a], &sides);
         double least = std::numeric_limits<double>::infinity();
         for (const GroupSurface::Point& side : sides) {
           InterpolateValue(to_attributes[a], side, other.data());

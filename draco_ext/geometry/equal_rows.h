@@ -5,32 +5,41 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
+#include <cstring>
+#include <limits>
 #include <vector>
 
 #include "lacerta/mesh.h"
 
 namespace lacerta {
 
-// For each row of `columns` numbers the first row that equals it (as == does: -0 equals 0; no NaN, please). O(n log n).
+// For each row of `columns` numbers of four bytes the first row that equals it (as == does: -0 equals 0; no NaN, please). O(n).
 template <typename T>
 std::vector<uint32_t> FirstEqualRow(Span<const T> table, size_t columns) {
-  std::vector<uint32_t> order(table.size() / columns), first(order.size());
-  std::iota(order.begin(), order.end(), 0u);
-  // Below zero, zero or above it: row a before, equal to or after row b.
-  const auto compare = [&](uint32_t a, uint32_t b) {
-    const T *row_a = table.data() + a * columns, *row_b = table.data() + b * columns;
+  static_assert(sizeof(T) == sizeof(uint32_t));
+  constexpr uint32_t kEmpty = std::numeric_limits<uint32_t>::max();
+  const auto hash_of = [columns](const T* row) {
+    uint64_t hash = 0;
     for (size_t i = 0; i < columns; ++i) {
-      if (row_a[i] != row_b[i]) return row_a[i] < row_b[i] ? -1 : 1;
+      const T value = row[i] + T{0};  // -0 becomes 0
+      uint32_t bits;
+      std::memcpy(&bits, &value, sizeof(bits));
+      hash = (hash ^ bits) * 0x9e3779b97f4a7c15;
+      hash ^= hash >> 29;
     }
-    return 0;
+    return hash * 0xbf58476d1ce4e5b9;
   };
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    const int sign = compare(a, b);
-    return sign < 0 || (sign == 0 && a < b);
-  });
-  for (size_t i = 0; i < order.size(); ++i) {
-    first[order[i]] = i > 0 && compare(order[i], order[i - 1]) == 0 ? first[order[i - 1]] : order[i];
+  std::vector<uint32_t> first(table.size() / columns);
+  std::vector<uint32_t> slots(first.size() + first.size() / 2 + 16, kEmpty);  // rows that are the first of their kind, by their hash
+  for (size_t row = 0; row < first.size(); ++row) {
+    const T* const numbers = table.data() + row * columns;
+    // The upper half of the hash as a share of the slots.
+    size_t slot = static_cast<size_t>((hash_of(numbers) >> 32) * slots.size() >> 32);
+    while (slots[slot] != kEmpty && !std::equal(numbers, numbers + columns, table.data() + slots[slot] * columns)) {
+      slot = slot + 1 == slots.size() ? 0 : slot + 1;
+    }
+    if (slots[slot] == kEmpty) slots[slot] = static_cast<uint32_t>(row);
+    first[row] = slots[slot];
   }
   return first;
 }

@@ -18,6 +18,23 @@ bool ShareAValue(const TriangleMesh& surface, const MeshAttribute& attribute, ui
   return false;
 }
 
+// Of each vertex, whether some attribute has more than one value there, or is absent from a part of its faces.
+std::vector<bool> FindSeams(const AttributedMesh& mesh) {
+  constexpr uint32_t kUnknown = MeshAttribute::kNoValue - 1;
+  std::vector<bool> has_seam(mesh.surface.positions.size(), false);
+  for (const MeshAttribute& attribute : mesh.attributes) {
+    std::vector<uint32_t> row_of(has_seam.size(), kUnknown);
+    for (size_t f = 0; f < mesh.surface.triangles.size(); ++f) {
+      for (size_t k = 0; k < 3; ++k) {
+        const uint32_t v = mesh.surface.triangles[f][k], row = attribute.corners[f][k];
+        if (row_of[v] == kUnknown) row_of[v] = row;
+        if (row_of[v] != row) has_seam[v] = true;
+      }
+    }
+  }
+  return has_seam;
+}
+
 }  // namespace
 
 void InterpolateValue(const MeshAttribute& attribute, const GroupSurface::Point& point, double* value) {
@@ -28,7 +45,7 @@ void InterpolateValue(const MeshAttribute& attribute, const GroupSurface::Point&
   }
 }
 
-GroupSurface::GroupSurface(const AttributedMesh& mesh) : mesh_(mesh), place_(mesh.surface.triangles.size()) {
+GroupSurface::GroupSurface(const AttributedMesh& mesh) : mesh_(mesh), place_(mesh.surface.triangles.size()), has_seam_(FindSeams(mesh)) {
   constexpr uint32_t kNone = SurfacePoint::kNone;
   std::map<uint32_t, std::vector<uint32_t>> faces_of_group;
   for (uint32_t f = 0; f < place_.size(); ++f) {
@@ -119,6 +136,13 @@ void GroupSurface::KeepOnePerSide(const MeshAttribute& attribute, std::vector<Po
     if (side[i] == i) (*points)[kept++] = (*points)[i];
   }
   points->resize(kept);
+}
+
+bool GroupSurface::AreSidesOfAllAttributes(const std::vector<Point>& points) const {
+  return std::none_of(points.begin(), points.end(), [this](const Point& point) {
+    const Triangle& t = mesh_.surface.triangles[point.face];
+    return has_seam_[t[0]] || has_seam_[t[1]] || has_seam_[t[2]];
+  });
 }
 
 }  // namespace lacerta

@@ -42,6 +42,8 @@ class GroupSurface {
   // Of what PointsNear gave, leaves the first one on each side of the attribute's seams. Faces are on one side where a chain of them
   // leads from one to the other in which they share a vertex and its value.
   void KeepOnePerSide(const MeshAttribute& attribute, std::vector<Point>* points) const;
+  // Whether that leaves the same points for each attribute, for there is no seam of any at the faces.
+  bool AreSidesOfAllAttributes(const std::vector<Point>& points) const;
 
   // The triangles, groups one after the other and neighbours mostly, too: for SurfaceSampler.
   const std::vector<TriangleTree::Corners>& corners() const { return corners_; }
@@ -58,6 +60,7 @@ class GroupSurface {
   const AttributedMesh& mesh_;
   std::map<uint32_t, Group> groups_;
   std::vector<uint32_t> place_;  // of each face in its group's list
+  std::vector<bool> has_seam_;   // of each vertex: not all of its corners have the same value of each attribute
   std::vector<TriangleTree::Corners> corners_;
   std::vector<uint32_t> faces_;
   std::vector<double> cumulated_area_;

@@ -59,11 +59,14 @@ AcrossSeams KeepSides(const GroupSurface& original, const std::vector<GroupSurfa
   AcrossSeams result;
   uint64_t all = 1;
   std::vector<GroupSurface::Point> sides;
+  const bool same_sides = original.AreSidesOfAllAttributes(near);
   for (size_t a = 0; a < original.mesh().attributes.size(); ++a) {
     const MeshAttribute& attribute = original.mesh().attributes[a];
     if (!HasValue(attribute, near[0])) continue;
-    sides = near;
-    original.KeepOnePerSide(attribute, &sides);
+    if (sides.empty() || !same_sides) {
+      sides = near;
+      original.KeepOnePerSide(attribute, &sides);
+    }
     if (sides.size() == 1) continue;
     uint64_t points = 0;
     for (size_t i = 0, side = 0; side < sides.size(); ++i) {

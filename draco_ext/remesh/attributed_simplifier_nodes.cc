@@ -33,6 +33,7 @@ void AttributedSimplifier::GatherNodes(uint32_t u, uint32_t v) {
   groups_.clear();
   group_members_.clear();
   const bool both_free = freedom_[u] == VertexFreedom::kSurface && freedom_[v] == VertexFreedom::kSurface;
+  std::vector<std::array<uint32_t, 2>> nodes;  // of a channel, and the number of each one's group
   for (uint32_t c = 0; c < channels_.size(); ++c) {
     const Channel& channel = channels_[c];
     if (both_free) {
@@ -41,7 +42,7 @@ void AttributedSimplifier::GatherNodes(uint32_t u, uint32_t v) {
       group_members_.insert(group_members_.end(), {channel.node_of_vertex[u], channel.node_of_vertex[v]});
       continue;
     }
-    std::vector<std::array<uint32_t, 2>> nodes;  // and the number of its group
+    nodes.clear();
     const auto number_of = [&](uint32_t node) {
       for (const auto& [known, number] : nodes) {
         if (known == node) return number;

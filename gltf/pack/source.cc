@@ -1,6 +1,8 @@
 #include "pack/source.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "document/buffer_edit.h"
@@ -69,6 +71,24 @@ void TakeOffFlatNormals(const GltfDocument& document, const Json& json, Source* 
   }
 }
 
+// Takes off what moves nothing in any target, as programs write it for normals and tangents that they do not morph: it is what its
+// absence says. Offsets of positions stay.
+void TakeOffZeroOffsets(std::vector<MorphTarget>* targets) {
+  std::set<std::string> kept = {"POSITION"};
+  for (const MorphTarget& target : *targets) {
+    for (const Attribute& attribute : target) {
+      for (uint64_t v = 0; v < attribute.data.count && kept.count(attribute.name) == 0; ++v) {
+        for (uint32_t c = 0; c < attribute.data.components; ++c) {
+          if (attribute.data.Float(v, c) != 0.0f) kept.insert(attribute.name);
+        }
+      }
+    }
+  }
+  const auto is_zero = [&](const Attribute& attribute) { return kept.count(attribute.name) == 0; };
+  if (std::any_of(targets->begin(), targets->end(), [&](const MorphTarget& t) { return std::all_of(t.begin(), t.end(), is_zero); })) return;
+  for (MorphTarget& target : *targets) target.erase(std::remove_if(target.begin(), target.end(), is_zero), target.end());
+}
+
 Status ReadSource(const GltfDocument& document, const Json& json, Source* source) {
   source->reason = ReasonToKeep(json);
   if (!source->reason.empty()) return Status();
@@ -84,6 +104,7 @@ Status ReadSource(const GltfDocument& document, const Json& json, Source* source
   source->primitive = std::move(primitive).value();
   source->targets = std::move(targets).value();
   RoundAnew(&*source->primitive);
+  TakeOffZeroOffsets(&source->targets);
   TakeOffFlatNormals(document, json, source);
   return Status();
 }

@@ -34,7 +34,8 @@ std::string ReasonToKeep(const Json& primitive);
 StatusOr<std::vector<MorphTarget>> ReadTargets(const GltfDocument& document, const Json& json, uint64_t num_vertices);
 
 // Reads all primitives. Those with equal accessors, and those with other accessors of equal content, are one source.
-// Quantized positions, directions and texture coordinates (KHR_mesh_quantization) become floats: they are rounded anew.
+// Quantized positions, directions and texture coordinates (KHR_mesh_quantization) become floats: they are rounded anew. Normals of
+// flat shading, and what targets have of normals and tangents without moving them, are left out.
 // Fails with kInvalidData on damaged data and on numbers that are not finite, naming mesh, primitive, accessor and index; what is legal but cannot be
 // compressed ends as a reason.
 StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document);

@@ -3,12 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string>
+
 #include "gltf/test_assets.h"
 
 namespace lacerta {
 namespace {
 
 using testing::AssetBuilder;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::WavySphere;
 
@@ -115,6 +119,33 @@ TEST(Source, NormalsThatSomethingNeedsStay) {
     tangents["attributes"]["TANGENT"] = AddAccessor(MakeAccessor(data, AccessorUse::kAttribute, false, &builder.document()), &builder.document());
     EXPECT_TRUE(HasNormals(&builder, std::move(tangents)));
   }
+}
+
+TEST(Source, WhatTargetsDoNotMoveIsTakenOff) {
+  const TriangleMesh ball = WavySphere(6, 8);
+  std::vector<Vec3f> none(ball.positions.size()), some = none;
+  some[5] = {0, 0.5f, 0};
+  using Offsets = std::map<std::string, std::vector<Vec3f>>;
+  const auto names_of = [&](const std::vector<Offsets>& targets) {
+    AssetBuilder builder;
+    Json primitive = builder.Primitive(ball);
+    primitive["attributes"]["NORMAL"] = builder.AddFloats(ball.positions, false);
+    for (const Offsets& target : targets) {
+      Json references = Json::object();
+      for (const auto& [name, values] : target) references[name] = builder.AddFloats(values, true);
+      primitive["targets"].push_back(std::move(references));
+    }
+    builder.AddMesh("a", Json::array({primitive}));
+    std::vector<std::string> names;
+    for (const MorphTarget& target : ReadSources(builder.document()).value()[0].targets) {
+      names.emplace_back();
+      for (const Attribute& attribute : target) names.back() += attribute.name[0];
+    }
+    return names;
+  };
+  EXPECT_THAT(names_of({{{"POSITION", some}, {"NORMAL", none}, {"TANGENT", none}}, {{"POSITION", none}, {"NORMAL", none}}}), ElementsAre("P", "P"));
+  EXPECT_THAT(names_of({{{"POSITION", some}, {"NORMAL", none}}, {{"POSITION", some}, {"NORMAL", some}}}), ElementsAre("NP", "NP"));
+  EXPECT_THAT(names_of({{{"POSITION", some}, {"NORMAL", none}}, {{"NORMAL", none}}}), ElementsAre("NP", "N"));  // no target may be empty
 }
 
 TEST(Source, NamesWhatIsWrongWithATarget) {
