@@ -137,7 +137,8 @@ TEST(Source, WhatTargetsDoNotMoveIsTakenOff) {
     }
     builder.AddMesh("a", Json::array({primitive}));
     std::vector<std::string> names;
-    for (const MorphTarget& target : ReadSources(builder.document()).value()[0].targets) {
+    const std::vector<Source> sources = ReadSources(builder.document()).value();
+    for (const MorphTarget& target : sources[0].targets) {
       names.emplace_back();
       for (const Attribute& attribute : target) names.back() += attribute.name[0];
     }
