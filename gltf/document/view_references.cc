@@ -1,8 +1,8 @@
 #include "document/view_references.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
-#include <string>
 
 #include "document/accessor.h"
 
@@ -47,15 +47,18 @@ void VisitViewReferences(Json& json, const std::function<void(Json&)>& visit) {
   }
 }
 
+bool RefersToNoData(const std::string& extension) {
+  // Those of Khronos and of several vendors; of avatars (VRM), engines and web platforms, which name nodes, meshes, materials and textures.
+  constexpr const char* kPrefixes[] = {"KHR_", "LACERTA_", "MSFT_", "EXT_texture_", "EXT_lights_", "EXT_meshopt_", "ADOBE_", "GODOT_", "MOZ_", "NEEDLE_", "OMI_", "VRMC_"};
+  return extension == "VRM" || std::any_of(std::begin(kPrefixes), std::end(kPrefixes), [&](const char* prefix) { return extension.rfind(prefix, 0) == 0; });
+}
+
 bool AreViewReferencesKnown(const GltfDocument& document) {
   const Json* used = Find(document.json, "extensionsUsed");
   if (used == nullptr || !used->is_array()) return true;
   return std::all_of(used->begin(), used->end(), [](const Json& entry) {
     const std::string name = AsString(&entry);
-    for (const char* prefix : {"KHR_", "LACERTA_", "EXT_texture_", "EXT_mesh_gpu_instancing", "EXT_lights_", "EXT_meshopt_", "MSFT_"}) {
-      if (name.rfind(prefix, 0) == 0) return true;
-    }
-    return false;
+    return RefersToNoData(name) || name == "EXT_mesh_gpu_instancing";  // accessors
   });
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <set>
+#include <string>
 
 #include "document/gltf_document.h"
 
@@ -13,6 +14,9 @@ namespace lacerta {
 // Calls visit(value) on every reference to a bufferView: by the key "bufferView" wherever it is, and "data" and
 // "refinements" of our extension.
 void VisitViewReferences(Json& json, const std::function<void(Json&)>& visit);
+
+// Whether an extension is known to refer to no accessor, and to bufferViews by the key "bufferView" or not at all.
+bool RefersToNoData(const std::string& extension);
 
 // Whether VisitViewReferences finds them all: of the extensions that the asset uses, none is known to refer to bufferViews
 // in a way of its own.

@@ -34,14 +34,6 @@ void VisitExtensions(const Json& json, const std::function<void(const Json&)>& v
   }
 }
 
-// Extensions known to refer to no accessor of their own.
-bool NamesNoAccessors(const std::string& name) {
-  for (const char* prefix : {"KHR_", "LACERTA_", "MSFT_", "EXT_texture_", "EXT_lights_", "EXT_meshopt_"}) {
-    if (name.rfind(prefix, 0) == 0) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 AccessorPool::AccessorPool(const GltfDocument& document, const std::vector<Place>& geometries)
@@ -68,7 +60,7 @@ AccessorPool::AccessorPool(const GltfDocument& document, const std::vector<Place
   VisitExtensions(document.json, [this](const Json& extensions) {
     if (!extensions.is_object()) return;
     for (const auto& [name, value] : extensions.items()) {
-      if (!NamesNoAccessors(name)) Count(value);
+      if (!RefersToNoData(name)) Count(value);
     }
   });
 }

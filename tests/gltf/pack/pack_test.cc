@@ -390,6 +390,31 @@ TEST(Pack, SharedAccessorsAndInstances) {
             ReadAccessor(ParseGltf(glb, "").value(), 0).value().bytes);
 }
 
+// Numbers of an extension that nobody knows may be accessors, those of an avatar's are nodes and the like.
+TEST(Pack, AccessorsStayForUnknownExtensionsAlone) {
+  for (const bool is_known : {false, true}) {
+    AssetBuilder builder;
+    builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(13, 22))}));
+    Json& json = builder.document().json;
+    json["materials"] = {{{"name", "red"}}};
+    const char* const name = is_known ? "VRMC_vrm" : "VENDOR_shapes";
+    json["extensionsUsed"] = {name};
+    json["extensions"][name] = {{"humanoid", {{"humanBones", {{"hips", {{"node", 0}}}, {"head", {{"node", 1}}}}}}}};
+    const Bytes glb = builder.Glb();
+    const auto packed = PackGltf(glb, Options(Fallback::kDraco));
+    ASSERT_TRUE(packed.ok()) << packed.status().message();
+    ASSERT_EQ(packed.value().report.primitives[0].storage, PrimitiveStorage::kProgressive);
+    const GltfDocument after = ParseGltf(packed.value().glb, "").value();
+    EXPECT_EQ(after.json["accessors"].size(), is_known ? 2u : 4u);
+    EXPECT_EQ(after.json["extensions"][name], json["extensions"][name]);
+    if (is_known) {
+      EXPECT_LT(packed.value().glb.size(), glb.size() / 2);
+    } else {
+      EXPECT_EQ(ReadAccessor(after, 0).value().bytes, ReadAccessor(ParseGltf(glb, "").value(), 0).value().bytes);
+    }
+  }
+}
+
 // As some programs write them: all positions of an asset in one view, all indices in another. What is replaced is gone although
 // points, which stay, hold on to both views.
 TEST(Pack, ViewsOfSeveralPrimitivesShrink) {
