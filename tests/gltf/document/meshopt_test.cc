@@ -12,6 +12,7 @@
 #include "document/buffer_edit.h"
 #include "document/merge_buffers.h"
 #include "gltf/test_assets.h"
+#include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
 
 namespace lacerta {
@@ -150,6 +151,48 @@ TEST(Meshopt, NoAssetGrows) {
   ASSERT_TRUE(packed.ok()) << packed.status().message();
   EXPECT_EQ(packed.value().report.primitives[0].storage, PrimitiveStorage::kUntouched);
   EXPECT_EQ(packed.value().glb, glb);
+}
+
+// The buffer that is not written stands between the GLB's and that of the refinements.
+TEST(Meshopt, GoesTogetherWithRefinementsInAFileOfTheirOwn) {
+  const TriangleMesh stays = testing::WavySphere(8, 12), ball = testing::WavySphere(13, 22);
+  GltfDocument document = Compressed(stays, "EXT_meshopt_compression");
+  document.json["meshes"][0]["primitives"][0]["mode"] = 0;
+  Json primitive = {{"attributes", Json::object()}};
+  primitive["attributes"]["POSITION"] =
+      AddAccessor(MakeAccessor(MakeFloatAccessor(ball.positions), AccessorUse::kAttribute, true, &document), &document);
+  primitive["indices"] = AddAccessor(
+      MakeAccessor(MakeIndexAccessor(ball.triangles, ball.positions.size()), AccessorUse::kIndices, false, &document), &document);
+  document.json["meshes"].push_back({{"primitives", Json::array({primitive})}});
+  ASSERT_TRUE(DecodeMeshoptViews(&document).ok());
+  ASSERT_TRUE(MergeBuffers(&document).ok());
+  PackOptions options;
+  options.encode.target = {EncodeTarget::Kind::kPsnr, 45.0};
+  options.encode.levels = LevelChoice::kAlways;
+  options.external_uri = "refinements.bin";
+  const auto packed = PackGltf(FormatGlb(document), options);
+  ASSERT_TRUE(packed.ok()) << packed.status().message();
+  EXPECT_FALSE(packed.value().external.empty());
+  const Json json = testing::JsonOf(packed.value().glb);
+  ASSERT_GE(json["buffers"].size(), 3u);  // and what was decoded to be read
+  EXPECT_FALSE(json["buffers"][1].contains("uri"));
+  EXPECT_EQ(json["buffers"][2]["uri"], "refinements.bin");
+  const GltfDocument after = ParseGltf(packed.value().glb, "").value();
+  EXPECT_TRUE(FindCompressedBytes(after, 0).has_value());
+  EXPECT_EQ(ReadAccessor(after, 0).value().bytes, MakeFloatAccessor(stays.positions).bytes);
+  for (const bool whole : {false, true}) {  // the base alone, and all levels
+    UnpackOptions unpack;
+    if (whole) {
+      unpack.folder = ::testing::TempDir();
+      ASSERT_TRUE(WriteFileAtomically(unpack.folder + "/refinements.bin", packed.value().external).ok());
+    }
+    const auto unpacked = UnpackGltf(packed.value().glb, unpack);
+    ASSERT_TRUE(unpacked.ok()) << unpacked.status().message();
+    const GltfDocument plain = ParseGltf(unpacked.value().glb, "").value();
+    EXPECT_EQ(ReadAccessor(plain, 0).value().bytes, MakeFloatAccessor(stays.positions).bytes);
+    const uint64_t count = ReadAccessor(plain, plain.json["meshes"][1]["primitives"][0]["indices"]).value().count;
+    EXPECT_EQ(count == 3 * packed.value().report.primitives[1].encode.levels.back().triangles, whole);
+  }
 }
 
 TEST(Meshopt, RefusesWhatItsStreamCannotHold) {
