@@ -106,9 +106,6 @@ GroupSurface::Nearness GroupSurface::PointsNear(uint32_t group, const Vec3f& p, 
   const double reach = std::sqrt(static_cast<double>(closest.squared_distance)) + beyond;
   std::vector<ClosestPointResult> near;
   part.tree.PointsNear(p, static_cast<float>(reach * reach), kMostNear - 1, &near);  // besides the closest one
-  std::sort(near.begin(), near.end(), [](const ClosestPointResult& a, const ClosestPointResult& b) {
-    return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance : a.point.face < b.point.face;
-  });
   for (const ClosestPointResult& result : near) {
     if (result.point.face != closest.point.face) add(result);
   }

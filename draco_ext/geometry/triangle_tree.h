@@ -59,8 +59,8 @@ class TriangleTree {
   // distance bounds the search from the start. It may be any number: what is no face of the tree is no hint.
   ClosestPointResult ClosestPointNear(const Vec3f& p, uint32_t hint) const;
 
-  // Appends to *points, in no particular order, for each face not farther from p than max_squared_distance its point closest to p,
-  // but for no more than `max_points` faces: the nearest where there are more.
+  // Appends to *points for each face not farther from p than max_squared_distance its point closest to p, the nearest first, of equal ones
+  // that of the lower face; but for no more than `max_points` faces: the nearest where there are more.
   void PointsNear(const Vec3f& p, float max_squared_distance, size_t max_points, std::vector<ClosestPointResult>* points) const;
 
   // Appends to *hits, in no particular order, where the line origin + t * direction meets the mesh with t_min <= t <=

@@ -240,6 +240,7 @@ void TriangleTree::PointsNear(const Vec3f& p, float max_squared_distance, size_t
       }
     }
   });
+  std::sort_heap(points->begin() + first_point, points->end(), is_nearer);
 }
 
 double TriangleTree::Crowding() const {

@@ -128,6 +128,11 @@ Status CheckShape(const Json& json) {
   return Status();
 }
 
+bool IsListed(const Json& json, const char* key, const char* name) {
+  const Json* list = Find(json, key);
+  return list != nullptr && list->is_array() && std::find(list->begin(), list->end(), name) != list->end();
+}
+
 Status CheckReadable(const Json& json) {
   const Json* asset = Find(json, "asset");
   const std::string version = asset == nullptr ? "" : AsString(Find(*asset, "version"));
@@ -221,10 +226,8 @@ StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint
   return bytes;
 }
 
-bool UsesExtension(const Json& json, const char* name) {
-  const Json* used = Find(json, "extensionsUsed");
-  return used != nullptr && used->is_array() && std::find(used->begin(), used->end(), name) != used->end();
-}
+bool UsesExtension(const Json& json, const char* name) { return IsListed(json, "extensionsUsed", name); }
+bool RequiresExtension(const Json& json, const char* name) { return IsListed(json, "extensionsRequired", name); }
 
 void AddExtension(const char* key, const char* name, GltfDocument* document) {
   Json& list = document->json[key];

@@ -45,8 +45,9 @@ StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint
 // The same, but cut short where the buffer ends early. Fails when the view is not there.
 StatusOr<Span<const uint8_t>> AvailableViewBytes(const GltfDocument& document, uint64_t index);
 
-// Whether a name is in the asset's extensionsUsed.
+// Whether a name is in the asset's extensionsUsed, or in extensionsRequired.
 bool UsesExtension(const Json& json, const char* name);
+bool RequiresExtension(const Json& json, const char* name);
 
 // Adds a name to the list `key` ("extensionsUsed" or "extensionsRequired"), or takes it away together with an empty
 // list.

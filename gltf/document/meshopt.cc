@@ -4,7 +4,6 @@
 #include <meshoptimizer.h>
 #endif
 
-#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
@@ -24,11 +23,6 @@ const Json* ExtensionOf(const Json& object, const char** name) {
     if (const Json* extension = Find(*extensions, candidate); extension != nullptr) return extension;
   }
   return nullptr;
-}
-
-bool IsRequired(const Json& json, const char* name) {
-  const Json* required = Find(json, "extensionsRequired");
-  return required != nullptr && required->is_array() && std::find(required->begin(), required->end(), name) != required->end();
 }
 
 #ifdef LACERTA_HAVE_MESHOPTIMIZER
@@ -151,7 +145,7 @@ Status ReplaceView(uint64_t index, uint64_t* left, GltfDocument* document) {
   view["buffer"] = buffer;
   view.erase("byteOffset");
   view["byteLength"] = length;
-  if (!IsRequired(document->json, name)) DropMeshopt(&view);
+  if (!RequiresExtension(document->json, name)) DropMeshopt(&view);
   return Status();
 }
 
@@ -184,9 +178,9 @@ std::optional<CompressedBytes> FindCompressedBytes(const GltfDocument& document,
   return place;
 }
 
-double CompressedShare(const GltfDocument& document, uint64_t index) {
+std::optional<double> CompressedShare(const GltfDocument& document, uint64_t index) {
   const std::optional<CompressedBytes> compressed = FindCompressedBytes(document, index);
-  if (!compressed.has_value()) return 1.0;
+  if (!compressed.has_value()) return std::nullopt;
   const uint64_t decoded = AsIndex(Find(*FindElement(document.json, "bufferViews", index), "byteLength")).value_or(0);
   return decoded == 0 ? 1.0 : static_cast<double>(compressed->length) / static_cast<double>(decoded);
 }

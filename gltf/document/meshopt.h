@@ -27,8 +27,8 @@ struct CompressedBytes {
 // Of bufferViews[index]; nothing where it is not compressed.
 std::optional<CompressedBytes> FindCompressedBytes(const GltfDocument& document, uint64_t index);
 
-// Compressed over decoded bytes of bufferViews[index]; 1 where it is not compressed.
-double CompressedShare(const GltfDocument& document, uint64_t index);
+// Compressed over decoded bytes of bufferViews[index]; nothing where it is not compressed.
+std::optional<double> CompressedShare(const GltfDocument& document, uint64_t index);
 
 // Says that the compressed bytes are elsewhere.
 void PlaceCompressedBytes(const CompressedBytes& place, Json* view);

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "pack/find_skin.h"
-#include "pack/morphs.h"
 #include "pack/texel_scale.h"
 
 namespace lacerta {

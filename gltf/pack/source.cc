@@ -19,10 +19,11 @@ namespace {
 uint64_t SizeOf(const GltfDocument& document, const Json* reference, const AccessorData& data, uint64_t bytes) {
   const Json* accessor = FindElement(document.json, "accessors", AsIndex(reference).value_or(~uint64_t{0}));
   const std::optional<uint64_t> view = accessor == nullptr ? std::nullopt : AsIndex(Find(*accessor, "bufferView"));
-  if (!view.has_value() || !FindCompressedBytes(document, *view).has_value()) return bytes;
+  const std::optional<double> share = view.has_value() ? CompressedShare(document, *view) : std::nullopt;
+  if (!share.has_value()) return bytes;
   const uint64_t size = data.components * ComponentSize(data.type);
   const uint64_t stride = AsIndex(Find(*FindElement(document.json, "bufferViews", *view), "byteStride")).value_or(size);
-  return static_cast<uint64_t>(CompressedShare(document, *view) * static_cast<double>(data.count * stride));
+  return static_cast<uint64_t>(*share * static_cast<double>(data.count * stride));
 }
 
 uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primitive& primitive, const std::vector<MorphTarget>& targets) {
