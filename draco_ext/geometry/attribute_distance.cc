@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -35,14 +36,27 @@ constexpr float kAbsent = -1;  // in place of an error: no attribute there
 struct SampledErrors {
   std::vector<float> errors;    // of attribute a at a * num_samples
   std::vector<uint8_t> turned;  // 1: all faces near look away
+  std::vector<uint8_t> swapped;  // 1: the back of a thin sheet has come upon its front or before it
   std::vector<double> squared_distances;  // sums over the blocks of samples
 };
+
+// Whether a thin sheet that `sample` is on one side of has lost its thickness in `nearness`, what is near on the other surface.
+bool IsSwapped(const GroupSurface& from, uint32_t face, const Vec3f& sample, double beyond, double diagonal, const GroupSurface::Nearness& nearness) {
+  constexpr double kThinnest = 1e-5, kLeft = 0.1;  // of the diagonal; of the thickness
+  if (!nearness.height_of_away || *nearness.height_of_away < -kLeft * beyond) return false;
+  uint32_t hint = face;
+  std::vector<GroupSurface::Point> near;
+  const std::optional<double> own = from.PointsNear(from.mesh().GroupOf(face), sample, from.NormalOf(face), beyond, &hint, &near).height_of_away;
+  return own && *own < -kThinnest * diagonal && *nearness.height_of_away > kLeft * *own;
+}
 
 SampledErrors ErrorsAtSamples(const GroupSurface& from, const GroupSurface& to, double diagonal, const AttributeDistanceOptions& options) {
   const std::vector<MeshAttribute>&from_attributes = from.mesh().attributes, &to_attributes = to.mesh().attributes;
   const uint64_t num_blocks = (options.num_samples + kBlockSize - 1) / kBlockSize;
   SampledErrors result{std::vector<float>(from_attributes.size() * options.num_samples, kAbsent), std::vector<uint8_t>(options.num_samples, 0),
+                       std::vector<uint8_t>(options.num_samples, 0),
                        std::vector<double>(num_blocks, 0.0)};
+  const double beyond = options.seam_distance * diagonal;
   uint32_t most_components = 0;
   for (const MeshAttribute& attribute : from_attributes) most_components = std::max(most_components, attribute.components);
   const auto measure_block = [&](uint64_t block) {
@@ -55,9 +69,9 @@ SampledErrors ErrorsAtSamples(const GroupSurface& from, const GroupSurface& to, 
       const SurfaceSampler::Point sample = sampler.Sample(i);
       const uint32_t face = from.face_of_slot(sample.slot);
       const GroupSurface::Point here{face, {static_cast<float>(1 - sample.u - sample.v), static_cast<float>(sample.u), static_cast<float>(sample.v)}, 0};
-      const GroupSurface::Nearness nearness =
-          to.PointsNear(from.mesh().GroupOf(face), sample.position, from.NormalOf(face), options.seam_distance * diagonal, &hint, &near);
+      const GroupSurface::Nearness nearness = to.PointsNear(from.mesh().GroupOf(face), sample.position, from.NormalOf(face), beyond, &hint, &near);
       result.turned[i] = !nearness.agrees;
+      result.swapped[i] = IsSwapped(from, face, sample.position, beyond, diagonal, nearness);
       result.squared_distances[block] += static_cast<double>(nearness.squared_distance);
       const bool same_sides = !to_attributes.empty() && to.AreSidesOfAllAttributes(near);
       if (same_sides) to.KeepOnePerSide(to_attributes[0], &near);
@@ -102,14 +116,16 @@ AttributeError Summarize(std::vector<float> errors) {
 
 struct OneSide {
   std::vector<AttributeError> errors;
-  double turned = 0, distance = 0;
+  double turned = 0, swapped = 0, distance = 0;
 };
 
 OneSide MeasureOneSide(const GroupSurface& from, const GroupSurface& to, double diagonal, const AttributeDistanceOptions& options) {
   const SampledErrors samples = ErrorsAtSamples(from, to, diagonal, options);
   const auto num_samples = static_cast<double>(options.num_samples);
   OneSide result;
-  result.turned = static_cast<double>(std::count(samples.turned.begin(), samples.turned.end(), 1)) / num_samples;
+  const auto share = [&](const std::vector<uint8_t>& flags) { return static_cast<double>(std::count(flags.begin(), flags.end(), 1)) / num_samples; };
+  result.turned = share(samples.turned);
+  result.swapped = share(samples.swapped);
   result.distance = std::sqrt(std::accumulate(samples.squared_distances.begin(), samples.squared_distances.end(), 0.0) / num_samples);
   for (size_t a = 0; a < from.mesh().attributes.size(); ++a) {
     const auto begin = samples.errors.begin() + static_cast<std::ptrdiff_t>(a * options.num_samples);
@@ -185,7 +201,7 @@ StatusOr<AttributeDistance> AttributeDistanceMeter::Measure(const AttributedMesh
   LACERTA_RETURN_IF_ERROR(CheckMatch(original_->surface, names_, other));
   OneSide forward = MeasureOneSide(original_->surface, other, original_->diagonal, options);
   OneSide backward = MeasureOneSide(other, original_->surface, original_->diagonal, options);
-  return AttributeDistance{std::move(forward.errors), std::move(backward.errors), forward.turned, backward.turned, forward.distance, backward.distance};
+  return AttributeDistance{std::move(forward.errors), std::move(backward.errors), forward.turned, backward.turned, forward.swapped, backward.swapped, forward.distance, backward.distance};
 }
 
 }  // namespace lacerta

@@ -89,6 +89,13 @@ Vec3d GroupSurface::NormalOf(uint32_t face) const {
   return Normalized(AreaVector(mesh_.surface.positions, mesh_.surface.triangles[face]));
 }
 
+Vec3d GroupSurface::PositionOf(const Point& point) const {
+  const Triangle& t = mesh_.surface.triangles[point.face];
+  Vec3d position;
+  for (size_t k = 0; k < 3; ++k) position += Vec3Cast<double>(mesh_.surface.positions[t[k]]) * static_cast<double>(point.barycentric[k]);
+  return position;
+}
+
 GroupSurface::Nearness GroupSurface::PointsNear(uint32_t group, const Vec3f& p, const Vec3d& normal, double beyond, uint32_t* hint,
                                                 std::vector<Point>* points) const {
   points->clear();
@@ -111,9 +118,11 @@ GroupSurface::Nearness GroupSurface::PointsNear(uint32_t group, const Vec3f& p, 
   }
   const auto first_other = std::stable_partition(points->begin(), points->end(),
                                                  [&](const Point& point) { return Dot(NormalOf(point.face), normal) > 0; });
-  const bool agrees = first_other != points->begin();
-  if (agrees) points->erase(first_other, points->end());
-  return {agrees, closest.squared_distance};
+  Nearness nearness{first_other != points->begin(), closest.squared_distance, {}};
+  if (!nearness.agrees) return nearness;
+  if (first_other != points->end()) nearness.height_of_away = Dot(PositionOf(*first_other) - PositionOf(points->front()), normal);
+  points->erase(first_other, points->end());
+  return nearness;
 }
 
 void GroupSurface::KeepOnePerSide(const MeshAttribute& attribute, std::vector<Point>* points) const {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "geometry/triangle_tree.h"
@@ -32,6 +33,8 @@ class GroupSurface {
   struct Nearness {
     bool agrees = false;         // a face near looks the way that was asked for
     float squared_distance = 0;  // of the closest point, whichever way its face looks; 0 where there is none
+    // Along the normal, of the nearest face that looks away above the nearest that looks the way asked for. Nothing where one is missing.
+    std::optional<double> height_of_away;
   };
 
   // The points of the group's faces that are closest to p: one per face, of the faces up to `beyond` farther than the closest one, and
@@ -56,6 +59,8 @@ class GroupSurface {
     std::vector<uint32_t> faces;  // of the mesh, for each face of the tree
     double area = 0;
   };
+
+  Vec3d PositionOf(const Point& point) const;
 
   const AttributedMesh& mesh_;
   std::map<uint32_t, Group> groups_;

@@ -112,7 +112,7 @@ StatusOr<SurfaceErrors> SurfaceErrorMeter::Measure(const AttributedMesh& mesh, u
     LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance across_groups, distance_->Measure(mesh.surface, SurfaceDistanceOptions::RmsOnly(num_samples)));
     distance = across_groups.Rms();
   }
-  SurfaceErrors errors{distance, {}, attributes.backward_turned, std::max(ShareAgainstNormals(mesh) - against_normals_, 0.0)};
+  SurfaceErrors errors{distance, {}, attributes.backward_turned, std::max(ShareAgainstNormals(mesh) - against_normals_, 0.0), attributes.forward_swapped};
   for (size_t a = 0; a < attributes.forward.size(); ++a) errors.attributes.push_back(attributes.Worst(a));
   return errors;
 }

@@ -24,7 +24,13 @@ struct SurfaceErrors {
   double turned = 0;           // share of the surface's area that looks away from all of the original near it
   double against_normals = 0;  // share that looks away from its own normals, beyond that of the original
 
-  double MostTurned() const { return std::max(turned, against_normals); }
+  double swapped = 0;          // share of the original's area over which the back of a thin sheet has come upon its front or before it
+
+  // Of what is swapped a twentieth counts: it is seen of double-sided materials alone, and told of walls that nobody sees, too.
+  double MostTurned() const {
+    constexpr double kOfSwapped = 0.05;
+    return std::max({turned, against_normals, kOfSwapped * swapped});
+  }
 };
 
 // What is allowed. All > 0; infinity: anything will do.

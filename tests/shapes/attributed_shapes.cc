@@ -82,6 +82,19 @@ VertexSoup TexturedGrid(int nx, int ny, float height) {
   return soup;
 }
 
+AttributedMesh ThickSheet(float height) {
+  VertexSoup front = TexturedGrid(10, 10), back = front;
+  for (Vec3f& p : front.positions) p.z = height;
+  for (Triangle& t : back.triangles) std::swap(t[1], t[2]);
+  for (VertexSoup::Attribute& attribute : back.attributes) {
+    if (attribute.kind != AttributeKind::kNormal) continue;
+    for (float& n : attribute.values) n = -n;
+  }
+  AttributedMesh mesh = WeldSoups({front, back}).value();
+  mesh.groups.assign(mesh.surface.triangles.size(), 0);
+  return mesh;
+}
+
 VertexSoup TexturedBox(int n) {
   VertexSoup soup = WithTextureAndNormals();
   for (int axis = 0; axis < 3; ++axis) {

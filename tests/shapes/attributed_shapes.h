@@ -24,6 +24,9 @@ SkinnedSoup SkinnedCylinder(int around, int up);
 // The plane z = height * sin(pi x) * sin(pi y) over the unit square in nx x ny squares, with TEXCOORD_0 = (x, y) and NORMAL.
 VertexSoup TexturedGrid(int nx, int ny, float height = 0.0f);
 
+// The two sides of a sheet over the unit square, one group: the front at that height, which may be below 0, and the back, which looks down, at zero.
+AttributedMesh ThickSheet(float height);
+
 // The unit cube, n x n squares a side: each side fills the texture (TEXCOORD_0) and has one NORMAL, so that all edges are seams.
 VertexSoup TexturedBox(int n);
 

@@ -39,6 +39,9 @@ struct AttributeDistance {
   std::vector<AttributeError> forward, backward;
   // Share of the area of the original, and of the other surface, near which all faces of the other one look away.
   double forward_turned = 0, backward_turned = 0;
+  // Share of the area over which the back of a thin sheet, which looks away, is upon its front or before it on the other surface: less than a
+  // tenth of the thickness is left. Of sheets that are thicker than 1e-5 diagonals, and thinner than seam_distance.
+  double forward_swapped = 0, backward_swapped = 0;
   // RMS of the distance to the closest point of the same group, model units. Where there is one group, that of SurfaceDistanceMeter by as many samples.
   double forward_distance = 0, backward_distance = 0;
 

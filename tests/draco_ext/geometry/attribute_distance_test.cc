@@ -185,6 +185,21 @@ TEST(AttributeDistanceTest, AreaThatLooksAwayIsCounted) {
   EXPECT_NEAR(distance.backward_turned, 0.1, 2e-4);
 }
 
+TEST(AttributeDistanceTest, ASheetWhoseBackCameBeforeItsFrontIsCounted) {
+  constexpr float kThickness = 4e-4f;
+  const AttributedMesh sheet = shapes::ThickSheet(kThickness);
+  EXPECT_EQ(Distance(sheet, sheet).forward_swapped, 0);
+  EXPECT_EQ(Distance(sheet, shapes::ThickSheet(0.2f * kThickness)).forward_swapped, 0);
+  EXPECT_EQ(Distance(sheet, shapes::ThickSheet(0.05f * kThickness)).forward_swapped, 1);
+  EXPECT_EQ(Distance(sheet, shapes::ThickSheet(0)).forward_swapped, 1);
+  const AttributeDistance swapped = Distance(sheet, shapes::ThickSheet(-kThickness));
+  EXPECT_EQ(swapped.forward_swapped, 1);
+  EXPECT_EQ(swapped.forward_turned, 0);  // a face near looks the right way
+  // A gap between two sheets is none, and a sheet too thin to be told apart is not looked at.
+  EXPECT_EQ(Distance(shapes::ThickSheet(-kThickness), sheet).forward_swapped, 0);
+  EXPECT_EQ(Distance(shapes::ThickSheet(1e-5f), shapes::ThickSheet(-1e-5f)).forward_swapped, 0);
+}
+
 TEST(AttributeDistanceTest, GroupsAreComparedWithThemselves) {
   // The same square twice, as two groups of different colors: of every group only its own may count, and only part has the texture.
   VertexSoup red = shapes::TexturedGrid(2, 2), blue = red;

@@ -33,6 +33,16 @@ TEST(SurfaceErrorsTest, DistanceIsThatOfTheSurfaces) {
   EXPECT_LT(none.distance, 1e-6);
 }
 
+TEST(SurfaceErrorsTest, SwappedSidesOfASheetCountATwentiethOfTurnedOnes) {
+  const AttributedMesh sheet = shapes::ThickSheet(4e-4f);
+  const SurfaceErrorMeter meter = SurfaceErrorMeter::Create(sheet).value();
+  EXPECT_EQ(meter.Measure(sheet, 10'000).value().MostTurned(), 0);
+  const SurfaceErrors errors = meter.Measure(shapes::ThickSheet(-4e-4f), 10'000).value();
+  EXPECT_EQ(errors.swapped, 1);
+  EXPECT_EQ(errors.turned, 0);
+  EXPECT_NEAR(errors.MostTurned(), 0.05, 1e-12);
+}
+
 TEST(SurfaceErrorsTest, RefusesWhatIsTooSmallToMeasure) {
   AttributedMesh mesh = WeldSoups({shapes::TexturedGrid(2, 2)}).value();
   EXPECT_TRUE(SurfaceErrorMeter::Create(mesh).ok());
