@@ -68,7 +68,7 @@ SampledErrors ErrorsAtSamples(const GroupSurface& from, const GroupSurface& to, 
     for (uint64_t i = block * kBlockSize; i < last; ++i) {
       const SurfaceSampler::Point sample = sampler.Sample(i);
       const uint32_t face = from.face_of_slot(sample.slot);
-      const GroupSurface::Point here{face, {static_cast<float>(1 - sample.u - sample.v), static_cast<float>(sample.u), static_cast<float>(sample.v)}, 0};
+      const GroupSurface::Point here{face, {static_cast<float>(1 - sample.u - sample.v), static_cast<float>(sample.u), static_cast<float>(sample.v)}, 0, sample.position};
       const GroupSurface::Nearness nearness = to.PointsNear(from.mesh().GroupOf(face), sample.position, from.NormalOf(face), beyond, &hint, &near);
       result.turned[i] = !nearness.agrees;
       result.swapped[i] = IsSwapped(from, face, sample.position, beyond, diagonal, nearness);

@@ -89,13 +89,6 @@ Vec3d GroupSurface::NormalOf(uint32_t face) const {
   return Normalized(AreaVector(mesh_.surface.positions, mesh_.surface.triangles[face]));
 }
 
-Vec3d GroupSurface::PositionOf(const Point& point) const {
-  const Triangle& t = mesh_.surface.triangles[point.face];
-  Vec3d position;
-  for (size_t k = 0; k < 3; ++k) position += Vec3Cast<double>(mesh_.surface.positions[t[k]]) * static_cast<double>(point.barycentric[k]);
-  return position;
-}
-
 GroupSurface::Nearness GroupSurface::PointsNear(uint32_t group, const Vec3f& p, const Vec3d& normal, double beyond, uint32_t* hint,
                                                 std::vector<Point>* points) const {
   points->clear();
@@ -106,7 +99,7 @@ GroupSurface::Nearness GroupSurface::PointsNear(uint32_t group, const Vec3f& p, 
   const ClosestPointResult closest = part.tree.ClosestPointNear(p, hint_is_here ? place_[*hint] : SurfacePoint::kNone);
   if (closest.point.face == SurfacePoint::kNone) return {};
   const auto add = [&](const ClosestPointResult& result) {
-    points->push_back({part.faces[result.point.face], result.point.barycentric, result.squared_distance});
+    points->push_back({part.faces[result.point.face], result.point.barycentric, result.squared_distance, result.point.position});
   };
   add(closest);
   *hint = points->front().face;
@@ -120,7 +113,7 @@ GroupSurface::Nearness GroupSurface::PointsNear(uint32_t group, const Vec3f& p, 
                                                  [&](const Point& point) { return Dot(NormalOf(point.face), normal) > 0; });
   Nearness nearness{first_other != points->begin(), closest.squared_distance, {}};
   if (!nearness.agrees) return nearness;
-  if (first_other != points->end()) nearness.height_of_away = Dot(PositionOf(*first_other) - PositionOf(points->front()), normal);
+  if (first_other != points->end()) nearness.height_of_away = Dot(Vec3Cast<double>(first_other->position) - Vec3Cast<double>(points->front().position), normal);
   points->erase(first_other, points->end());
   return nearness;
 }

@@ -19,6 +19,7 @@ class GroupSurface {
     uint32_t face = 0;
     std::array<float, 3> barycentric{};
     float squared_distance = 0;
+    Vec3f position;
   };
 
   static constexpr size_t kMostNear = 49;  // points that PointsNear gives, the nearest: more faces are not told apart, so that the work is bounded
@@ -59,8 +60,6 @@ class GroupSurface {
     std::vector<uint32_t> faces;  // of the mesh, for each face of the tree
     double area = 0;
   };
-
-  Vec3d PositionOf(const Point& point) const;
 
   const AttributedMesh& mesh_;
   std::map<uint32_t, Group> groups_;

@@ -127,7 +127,7 @@ Samples TakeSamples(const AttributedMesh& mesh, const GroupSurface& original, co
   for (uint32_t f = 0; f < counts.size(); ++f) {
     for (uint32_t i = 0; i < counts[f]; ++i) {
       const Vec3d w = TrianglePoint(n++, 0.5);
-      samples.push_back({f, {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)}, {kNone, {}, 0}, kNone});
+      samples.push_back({f, {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)}, {kNone, {}, 0, {}}, kNone});
     }
   }
   result.across.resize((samples.size() + kBlockSize - 1) / kBlockSize);

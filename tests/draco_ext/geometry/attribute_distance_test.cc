@@ -196,7 +196,9 @@ TEST(AttributeDistanceTest, ASheetWhoseBackCameBeforeItsFrontIsCounted) {
   EXPECT_EQ(swapped.forward_swapped, 1);
   EXPECT_EQ(swapped.forward_turned, 0);  // a face near looks the right way
   // A gap between two sheets is none, and a sheet too thin to be told apart is not looked at.
-  EXPECT_EQ(Distance(shapes::ThickSheet(-kThickness), sheet).forward_swapped, 0);
+  const AttributeDistance back = Distance(shapes::ThickSheet(-kThickness), sheet);
+  EXPECT_EQ(back.forward_swapped, 0);
+  EXPECT_EQ(back.backward_swapped, 1);
   EXPECT_EQ(Distance(shapes::ThickSheet(1e-5f), shapes::ThickSheet(-1e-5f)).forward_swapped, 0);
 }
 
