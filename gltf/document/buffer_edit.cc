@@ -11,14 +11,18 @@ namespace {
 
 constexpr uint64_t kAlignment = 4;
 
+size_t AlignedSize(size_t size) { return (size + kAlignment - 1) / kAlignment * kAlignment; }
+
 const char* TypeName(uint32_t components) {
   constexpr const char* kNames[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
   return kNames[components - 1];  // NOLINT(clang-analyzer-core.uninitialized.UndefReturn): attributes have one to four
 }
 
-void AddBounds(const AccessorData& data, Json* accessor) {
+// Of what the accessor stores: normalization does not count (glTF 2.0, section 3.6.2.5).
+void AddBounds(AccessorData data, Json* accessor) {
   Json min = Json::array();
   Json max = Json::array();
+  data.normalized = false;
   for (const ComponentRange& range : ComponentRanges(data)) {
     min.push_back(ShortNumber(range.low));
     max.push_back(ShortNumber(range.high));
@@ -55,11 +59,11 @@ uint64_t AddBuffer(Bytes bytes, GltfDocument* document) {
   return buffers.size() - 1;
 }
 
-void PlaceView(uint64_t offset, Json* view) {
+void PlaceAt(uint64_t offset, Json* part) {
   if (offset != 0) {
-    (*view)["byteOffset"] = offset;
+    (*part)["byteOffset"] = offset;
   } else {
-    view->erase("byteOffset");
+    part->erase("byteOffset");
   }
 }
 
@@ -67,7 +71,7 @@ uint64_t AddBufferView(uint64_t buffer, uint64_t offset, uint64_t length, GltfDo
   Json& views = document->json["bufferViews"];
   if (!views.is_array()) views = Json::array();
   Json view = {{"buffer", buffer}};
-  PlaceView(offset, &view);
+  PlaceAt(offset, &view);
   view["byteLength"] = length;
   views.push_back(std::move(view));
   return views.size() - 1;
@@ -85,7 +89,7 @@ Json MakeAccessor(const AccessorData& data, AccessorUse use, bool bounds, GltfDo
   constexpr uint32_t kArrayBuffer = 34962;
   constexpr uint32_t kElementArrayBuffer = 34963;
   const size_t size = data.components * ComponentSize(data.type);
-  const size_t stride = use == AccessorUse::kAttribute ? (size + kAlignment - 1) / kAlignment * kAlignment : size;
+  const size_t stride = use == AccessorUse::kAttribute ? AlignedSize(size) : size;
   Bytes bytes;
   if (stride == size) {
     bytes = data.bytes;
@@ -112,13 +116,16 @@ bool HasNarrowIndices(const AccessorData& data) {
   return data.count <= uint64_t{std::numeric_limits<uint16_t>::max()} + 1;
 }
 
-uint64_t DenseSize(const AccessorData& data) { return data.count * data.components * ComponentSize(data.type); }
+uint64_t DenseSize(const AccessorData& data) { return data.count * AlignedSize(data.components * ComponentSize(data.type)); }
 
 uint64_t SparseSize(const AccessorData& data) {
-  constexpr uint64_t kJson = 200;  // of a sparse part and its two views
+  constexpr uint64_t kJson = 140;  // of a sparse part
   const uint64_t index = HasNarrowIndices(data) ? sizeof(uint16_t) : sizeof(uint32_t);
   return NonZeroElements(data).size() * (data.components * ComponentSize(data.type) + index) + kJson;
 }
+
+// Appends zeros until something of elements of that size may follow.
+void Align(size_t size, Bytes* bytes) { bytes->resize((bytes->size() + size - 1) / size * size); }
 
 }  // namespace
 
@@ -126,30 +133,35 @@ bool SparseIsSmaller(const AccessorData& data) { return SparseSize(data) < Dense
 
 uint64_t StoredSize(const AccessorData& data) { return std::min(SparseSize(data), DenseSize(data)); }
 
-Json MakeSparseAccessor(const AccessorData& data, bool bounds, GltfDocument* document) {
-  std::vector<uint32_t> elements = NonZeroElements(data);
-  if (elements.empty() && data.count > 0) elements.push_back(0);  // not every reader knows accessors without any data
-  Json accessor = DescribeAccessor(data, bounds);
-  const bool narrow = HasNarrowIndices(data);
-  const size_t size = data.components * ComponentSize(data.type);
-  Bytes indices;
-  Bytes values;
-  for (const uint32_t element : elements) {
-    for (size_t byte = 0; byte < (narrow ? 2u : 4u); ++byte) indices.push_back(static_cast<uint8_t>(element >> (8 * byte)));
-    const auto begin = data.bytes.begin() + static_cast<std::ptrdiff_t>(element * size);
-    values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(size));
+std::vector<Json> MakeSparseAccessors(const std::vector<SparseSource>& sources, GltfDocument* document) {
+  Bytes indices, values;
+  const uint64_t index_view = ArraySize(document->json, "bufferViews"), value_view = index_view + 1;
+  std::vector<Json> accessors;
+  for (const auto& [data, bounds] : sources) {
+    std::vector<uint32_t> elements = NonZeroElements(*data);
+    if (elements.empty() && data->count > 0) elements.push_back(0);  // not every reader knows accessors without any data
+    const ComponentType type = HasNarrowIndices(*data) ? ComponentType::kUint16 : ComponentType::kUint32;
+    const size_t size = data->components * ComponentSize(data->type);
+    Align(ComponentSize(type), &indices);
+    Align(ComponentSize(data->type), &values);
+    Json index_part = {{"bufferView", index_view}, {"componentType", static_cast<uint32_t>(type)}}, value_part = {{"bufferView", value_view}};
+    PlaceAt(indices.size(), &index_part);
+    PlaceAt(values.size(), &value_part);
+    for (const uint32_t element : elements) {
+      for (size_t byte = 0; byte < ComponentSize(type); ++byte) indices.push_back(static_cast<uint8_t>(element >> (8 * byte)));
+      const auto begin = data->bytes.begin() + static_cast<std::ptrdiff_t>(element * size);
+      values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(size));
+    }
+    Json accessor = DescribeAccessor(*data, bounds);
+    accessor["sparse"] = {{"count", elements.size()}, {"indices", std::move(index_part)}, {"values", std::move(value_part)}};
+    accessors.push_back(std::move(accessor));
   }
-  const auto add_view = [&](Bytes bytes) {
-    const uint64_t length = bytes.size();
-    return AddBufferView(AddBuffer(std::move(bytes), document), 0, length, document);
-  };
-  const uint64_t index_view = add_view(std::move(indices));
-  const uint64_t value_view = add_view(std::move(values));
-  const ComponentType type = narrow ? ComponentType::kUint16 : ComponentType::kUint32;
-  accessor["sparse"] = {{"count", elements.size()},
-                        {"indices", {{"bufferView", index_view}, {"componentType", static_cast<uint32_t>(type)}}},
-                        {"values", {{"bufferView", value_view}}}};
-  return accessor;
+  if (accessors.empty()) return accessors;
+  for (Bytes* bytes : {&indices, &values}) {
+    const uint64_t length = bytes->size();
+    AddBufferView(AddBuffer(std::move(*bytes), document), 0, length, document);
+  }
+  return accessors;
 }
 
 uint64_t AddAccessor(Json accessor, GltfDocument* document) {

@@ -15,8 +15,8 @@ namespace lacerta {
 // Appends a buffer of its own that holds `bytes`; returns its index.
 uint64_t AddBuffer(Bytes bytes, GltfDocument* document);
 
-// Lets a view begin at `offset`; 0 goes without saying.
-void PlaceView(uint64_t offset, Json* view);
+// Lets a view or what is in it begin at `offset`; 0 goes without saying.
+void PlaceAt(uint64_t offset, Json* part);
 
 // Appends a view of a part of a buffer; returns its index.
 uint64_t AddBufferView(uint64_t buffer, uint64_t offset, uint64_t length, GltfDocument* document);
@@ -25,9 +25,13 @@ enum class AccessorUse { kAttribute, kIndices };
 
 // The JSON of an accessor over `data` with a buffer and a view of its own; min and max are given where `bounds` is set.
 Json MakeAccessor(const AccessorData& data, AccessorUse use, bool bounds, GltfDocument* document);
-// The same, but with the elements that are not zero alone, and no data for the others. The data may hold 2^32 elements at
-// most.
-Json MakeSparseAccessor(const AccessorData& data, bool bounds, GltfDocument* document);
+// What becomes an accessor. The data may hold 2^32 elements at most.
+struct SparseSource {
+  const AccessorData* data;
+  bool bounds;
+};
+// The same, but with the elements that are not zero alone, and no data for the others; all share a view of indices and one of values.
+std::vector<Json> MakeSparseAccessors(const std::vector<SparseSource>& sources, GltfDocument* document);
 bool SparseIsSmaller(const AccessorData& data);  // with its JSON
 // Bytes of the smaller of the two, with the JSON of a sparse part.
 uint64_t StoredSize(const AccessorData& data);

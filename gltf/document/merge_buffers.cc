@@ -213,7 +213,7 @@ Status MergeBuffers(GltfDocument* document) {
     if (compressed[i].has_value()) {
       PlaceCompressedBytes({compressed[i]->extension, 0, MovedTo(used, compressed[i]->buffer, compressed[i]->offset), compressed[i]->length}, &view);
       view["buffer"] = 1;
-      PlaceView(place.moved_to, &view);
+      PlaceAt(place.moved_to, &view);
       continue;
     }
     Range all;  // where the view is after the move
@@ -223,7 +223,7 @@ Status MergeBuffers(GltfDocument* document) {
       all = {std::min(all.begin, begin), std::max(all.end, begin + (range.end - range.begin))};
     }
     view["buffer"] = 0;
-    PlaceView(all.begin, &view);
+    PlaceAt(all.begin, &view);
     if (!ranges[i].empty()) view["byteLength"] = all.end - all.begin;
     place.moved_to = all.begin;
   }
@@ -232,7 +232,7 @@ Status MergeBuffers(GltfDocument* document) {
     if (!view.has_value() || *view >= places.size() || ranges[static_cast<size_t>(*view)].empty()) return;
     const Interval& place = places[static_cast<size_t>(*view)];
     const uint64_t offset = place.begin + AsIndex(Find(part, "byteOffset")).value_or(0);
-    PlaceView(MovedTo(used, place.buffer, offset) - place.moved_to, &part);
+    PlaceAt(MovedTo(used, place.buffer, offset) - place.moved_to, &part);
   });
   document->buffers.clear();
   document->json.erase("buffers");

@@ -188,7 +188,7 @@ std::optional<double> CompressedShare(const GltfDocument& document, uint64_t ind
 void PlaceCompressedBytes(const CompressedBytes& place, Json* view) {
   Json& extension = (*view)["extensions"][place.extension];
   extension["buffer"] = place.buffer;
-  PlaceView(place.offset, &extension);
+  PlaceAt(place.offset, &extension);
 }
 
 void DropMeshopt(Json* object) {

@@ -243,10 +243,10 @@ Status ReplaceTransmittedBytes(Bytes data, Progressive* progressive, GltfDocumen
     if (AsIndex(Find(view, "buffer")) != old_buffer || offset < old_begin || end > old_end || &view == &old) continue;
     if (end - old_begin > length) return InvalidData("a bufferView shows a part of the refinements");
     view["buffer"] = buffer;
-    PlaceView(offset - old_begin, &view);
+    PlaceAt(offset - old_begin, &view);
   }
   old["buffer"] = buffer;
-  PlaceView(0, &old);
+  PlaceAt(0, &old);
   old["byteLength"] = length;
   std::set<uint64_t> unused;
   if (progressive->refinements.has_value()) unused.insert(*progressive->refinements);

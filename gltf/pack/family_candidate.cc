@@ -1,10 +1,13 @@
 #include "pack/family_candidate.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "geometry/value_difference.h"
 #include "pack/morphs.h"
+#include "pack/round_targets.h"
 #include "pack/rounded.h"
 #include "pack/simplified.h"
 #include "pack/simplified_morphs.h"
@@ -36,9 +39,19 @@ FamilyCandidate ToCandidate(const FamilyContext& context, RoundedFamily rounded,
   return candidate;
 }
 
+// What the rounded surface leaves of its errors to its targets.
+TargetTolerance ToleranceOf(const FamilyContext& context, const RoundedFamily& rounded) {
+  double degrees = 0.0;
+  for (const std::vector<AttributeReport>& reports : rounded.reports) {
+    for (const AttributeReport& report : reports) degrees = std::max(degrees, report.unit == "degrees" ? report.error : 0.0);
+  }
+  return {RoomBeside(rounded.error, context.Error()), RoomBeside(degrees, context.options->attributes.normal_degrees) / kDegreesPerRadian};
+}
+
 // Fails with kUnsupported where morph targets cannot follow.
 StatusOr<FamilyCandidate> ToCandidate(const FamilyContext& context, RoundedFamily rounded) {
   std::vector<std::vector<MorphTarget>> targets;
+  const TargetTolerance tolerance = context.MayRoundTargets() ? ToleranceOf(context, rounded) : TargetTolerance();
   const std::vector<size_t>& members = context.members();
   for (size_t m = 0; m < members.size(); ++m) {
     const Source& source = context.scene->sources[members[m]];
@@ -46,7 +59,7 @@ StatusOr<FamilyCandidate> ToCandidate(const FamilyContext& context, RoundedFamil
     if (source.targets.empty()) continue;
     auto reordered = ReorderTargets({&*source.primitive, &source.targets}, rounded.precisions[m], rounded.members[m].decoded);
     if (!reordered.has_value()) return Unsupported("has morph targets that tell apart what its other attributes do not");
-    targets.back() = std::move(*reordered);
+    targets.back() = RoundTargets(std::move(*reordered), tolerance);
   }
   return ToCandidate(context, std::move(rounded), std::move(targets));
 }
@@ -73,7 +86,7 @@ StatusOr<FamilyCandidate> Simplified(const FamilyContext& context, const FamilyM
   FamilyCandidate candidate;
   if (context.HasTargets()) {
     LACERTA_ASSIGN_OR_RETURN(MorphedFamily simplified,
-                             SimplifyMorphedFamily(meter, context.Targets(), context.Mixes(), context.scene->texel_side, bounds));
+                             SimplifyMorphedFamily(meter, context.Targets(), context.Mixes(), context.MayRoundTargets(), context.scene->texel_side, bounds));
     candidate = ToCandidate(context, std::move(simplified.rounded), std::move(simplified.targets));
   } else {
     LACERTA_ASSIGN_OR_RETURN(RoundedFamily simplified, SimplifyFamily(meter, bounds));

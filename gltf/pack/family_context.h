@@ -32,6 +32,7 @@ struct FamilyContext {
   bool HasTargets() const;  // of morphs
   std::vector<const std::vector<MorphTarget>*> Targets() const;  // of each member
   std::vector<TargetMix> Mixes() const;  // that the asset shows
+  bool MayRoundTargets() const { return options->fallback == Fallback::kDraco && !options->float_targets; }
   StatusOr<std::optional<Skin>> FindSkin() const;  // what moves the family; empty where nothing does
   TexelScale Scale() const;  // refers to the scene
   uint64_t BytesBefore() const;    // of all members' data, as often as the asset holds it

@@ -31,7 +31,7 @@ StatusOr<FamilyStream> StreamOf(const FamilyContext& context, const FamilyMeter&
   const Effort effort = context.options->encode.effort;
   if (!context.HasTargets()) return StreamFamily(meter, effort, most_bytes);
   LACERTA_ASSIGN_OR_RETURN(const MorphChannels morphs,
-                           MorphChannels::Create(meter, context.Targets(), context.Mixes(), context.scene->texel_side));
+                           MorphChannels::Create(meter, context.Targets(), context.Mixes(), context.MayRoundTargets(), context.scene->texel_side));
   return StreamFamily(morphs.meter(), effort, most_bytes, &morphs);
 }
 

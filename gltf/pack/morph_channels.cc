@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "extension/target_channels.h"
+#include "geometry/value_difference.h"
 
 namespace lacerta {
 namespace {
@@ -137,9 +138,11 @@ void DropUpTo(double nothing, std::vector<float>* offsets) {
 
 StatusOr<MorphChannels> MorphChannels::Create(const FamilyMeter& plain,
                                               const std::vector<const std::vector<MorphTarget>*>& targets,
-                                              const std::vector<TargetMix>& mixes, uint64_t texel_side) {
+                                              const std::vector<TargetMix>& mixes, bool round_targets, uint64_t texel_side) {
   LACERTA_RETURN_IF_ERROR(plain.status());
+  constexpr double kShare = 0.2;  // of what is allowed, for plain targets
   MorphChannels result;
+  if (round_targets) result.tolerance_ = {kShare * plain.error(), kShare * plain.attribute_targets().normal_degrees / kDegreesPerRadian};
   std::vector<MorphedPrimitive> originals;
   size_t num_targets = 0;
   for (size_t m = 0; m < targets.size(); ++m) {
@@ -224,6 +227,7 @@ std::vector<std::vector<MorphTarget>> MorphChannels::PlainTargets(const Attribut
         groups.back().back().push_back({offsets.name, MakeFloatAccessor(values, 3)});
       }
     }
+    groups.back() = RoundTargets(std::move(groups.back()), tolerance_);
   }
   return groups;
 }

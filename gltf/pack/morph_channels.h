@@ -15,6 +15,7 @@
 #include "lacerta/status.h"
 #include "pack/family_meter.h"
 #include "pack/morphs.h"
+#include "pack/round_targets.h"
 #include "pack/source.h"
 
 namespace lacerta {
@@ -26,7 +27,7 @@ class MorphChannels {
   // and TANGENT or too many, and like FamilyMeter.
   static StatusOr<MorphChannels> Create(const FamilyMeter& plain,
                                         const std::vector<const std::vector<MorphTarget>*>& targets,
-                                        const std::vector<TargetMix>& mixes, uint64_t texel_side);
+                                        const std::vector<TargetMix>& mixes, bool round_targets, uint64_t texel_side);
 
   // Of the primitives with their targets as further attributes (extension/target_channels.h).
   const FamilyMeter& meter() const { return *meter_; }
@@ -36,13 +37,14 @@ class MorphChannels {
   Status Measure(const AttributedMesh& mesh, uint64_t num_samples, SurfaceErrors* errors) const;
 
   // What the primitives of the base have as targets in plain glTF, for each group: offsets of positions up to the
-  // meter's error are 0, which takes less and which no base shows.
+  // meter's error are 0, which takes less and which no base shows, and all are rounded (RoundTargets) if asked.
   std::vector<std::vector<MorphTarget>> PlainTargets(const AttributedBase& base) const;
   uint64_t BytesOfPlainTargets(const AttributedBase& base) const;
 
  private:
   MorphChannels() = default;
 
+  TargetTolerance tolerance_;          // of plain targets
   std::vector<Primitive> primitives_;  // what meter_ refers to
   std::unique_ptr<const FamilyMeter> meter_;
   std::optional<MorphMeter> positions_;

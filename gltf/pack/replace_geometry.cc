@@ -50,14 +50,22 @@ NewGeometry DescribedGeometry(const Primitive& primitive) {
 }
 
 std::vector<std::vector<NamedAccessor>> TargetAccessors(const std::vector<MorphTarget>& targets, GltfDocument* document) {
+  const auto has_bounds = [](const Attribute& attribute) { return attribute.name == "POSITION"; };
+  std::vector<SparseSource> sources;
+  for (const MorphTarget& target : targets) {
+    for (const Attribute& attribute : target) {
+      if (SparseIsSmaller(attribute.data)) sources.push_back({&attribute.data, has_bounds(attribute)});
+    }
+  }
+  std::vector<Json> sparse = MakeSparseAccessors(sources, document);
+  size_t next = 0;
   std::vector<std::vector<NamedAccessor>> result;
   for (const MorphTarget& target : targets) {
     std::vector<NamedAccessor> accessors;
     for (const Attribute& attribute : target) {
-      const bool bounds = attribute.name == "POSITION";
-      Json accessor = SparseIsSmaller(attribute.data) ? MakeSparseAccessor(attribute.data, bounds, document)
-                                                      : MakeAccessor(attribute.data, AccessorUse::kAttribute, bounds, document);
-      accessors.push_back({attribute.name, std::move(accessor)});
+      const bool is_sparse = next < sources.size() && sources[next].data == &attribute.data;
+      accessors.push_back({attribute.name, is_sparse ? std::move(sparse[next++])
+                                                     : MakeAccessor(attribute.data, AccessorUse::kAttribute, has_bounds(attribute), document)});
     }
     result.push_back(std::move(accessors));
   }

@@ -1,9 +1,12 @@
 #include "pack/simplified_morphs.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 
+#include "pack/round_targets.h"
 #include "pack/simplified.h"
 
 namespace lacerta {
@@ -30,11 +33,24 @@ SurfaceErrors ErrorsOf(const FamilyMeter& plain, const FamilyMeter& morphed, Sur
   return errors;
 }
 
+// What the errors of the simplified surface leave to directions; positions are measured again once they are rounded.
+TargetTolerance ToleranceOf(const FamilyMeter& morphed, const SurfaceErrors& errors) {
+  constexpr double kShare = 0.2;  // of the error, in positions
+  TargetTolerance tolerance{kShare * morphed.error(), std::numeric_limits<double>::infinity()};
+  for (size_t a = 0; a < errors.attributes.size(); ++a) {
+    const std::string& name = morphed.original().attributes[a].name;
+    if (!IsTargetAttribute(name) || IsTargetPosition(name)) continue;
+    tolerance.directions = std::min(tolerance.directions, RoomBeside(errors.attributes[a].rms_99, morphed.targets().attributes[a]));
+  }
+  return tolerance;
+}
+
 }  // namespace
 
 StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
                                               const std::vector<const std::vector<MorphTarget>*>& targets,
-                                              const std::vector<TargetMix>& mixes, uint64_t texel_side, const std::vector<double>& everywhere) {
+                                              const std::vector<TargetMix>& mixes, bool round_targets, uint64_t texel_side,
+                                              const std::vector<double>& everywhere) {
   constexpr double kNothing = 0.01;  // of the error: offsets below are none
   LACERTA_RETURN_IF_ERROR(meter.status());
   std::vector<Primitive> with_targets;
@@ -49,9 +65,10 @@ StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
   LACERTA_ASSIGN_OR_RETURN(const MorphMeter morph_meter, MorphMeter::Create(originals, mixes));
   MorphedFamily result;
   const auto round = [&](SimplifiedFamily simplified) -> StatusOr<RoundedFamily> {
+    const TargetTolerance tolerance = round_targets ? ToleranceOf(morphed, simplified.errors) : TargetTolerance();
     std::vector<std::vector<MorphTarget>> simplified_targets;
     for (size_t m = 0; m < targets.size(); ++m) {
-      simplified_targets.push_back(TakeTargets(*targets[m], kNothing * meter.error(), &simplified.primitives[m]));
+      simplified_targets.push_back(RoundTargets(TakeTargets(*targets[m], kNothing * meter.error(), &simplified.primitives[m]), tolerance));
     }
     const auto order_targets = [&](const RoundedFamily& rounded) {
       result.targets.clear();

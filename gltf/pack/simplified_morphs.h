@@ -18,11 +18,12 @@ struct MorphedFamily {
 };
 
 // SimplifyFamily of primitives with these targets (parallel to the meter's primitives), whose offsets are simplified
-// with them and stay floats. With each of the targets at weight 1, and in each of the mixes, the surface is within the meter's error.
+// with them, and rounded (RoundTargets) or left floats. With each of the targets at weight 1, and in each of the mixes, the surface is within the meter's error.
 // Fails like SimplifyFamily and WithTargets.
 StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
                                               const std::vector<const std::vector<MorphTarget>*>& targets,
-                                              const std::vector<TargetMix>& mixes, uint64_t texel_side, const std::vector<double>& everywhere);
+                                              const std::vector<TargetMix>& mixes, bool round_targets, uint64_t texel_side,
+                                              const std::vector<double>& everywhere);
 
 }  // namespace lacerta
 

@@ -43,6 +43,7 @@ struct PackArguments {
   bool keep_vertices = false;
   bool shape_only = false;
   bool repair = false;
+  bool float_targets = false;
   BatchOptions batch;
   bool tables = false;  // somebody is looking
 };
@@ -211,6 +212,7 @@ StatusOr<FileOutcome> PackAsset(const PackArguments& arguments, const EncodeOpti
   options.attributes = arguments.attributes;
   options.simplify = !arguments.keep_vertices;
   options.repair = arguments.repair;
+  options.float_targets = arguments.float_targets;
   if (arguments.fallback == "plain") options.fallback = Fallback::kPlain;
   if (arguments.fallback == "none") options.fallback = Fallback::kNone;
   options.folder = std::filesystem::path(arguments.input).parent_path().string();
@@ -342,6 +344,8 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   pack->add_flag("--external", arguments->external,
                  "Put refinements into a second file, OUT.refinements.bin, which readers fetch when they want it");
   pack->add_flag("--keep-vertices", arguments->keep_vertices, "Do not simplify surfaces with attributes, only round them");
+  pack->add_flag("--float-targets", arguments->float_targets,
+                 "Leave offsets of morph targets floats, for readers that do not know KHR_mesh_quantization");
   pack->add_flag("--shape-only", arguments->shape_only,
                  "Of .obj and .ply files take the shape alone, without texture coordinates, normals, colors and materials");
   pack->add_flag("--repair", arguments->repair,

@@ -55,6 +55,9 @@ struct PackOptions {
   // the animations and of turned joints, too, with morph targets at weight 1 of each.
   bool simplify = true;
   Fallback fallback = Fallback::kDraco;
+  // Offsets of morph targets stay floats. Else those that stand beside Draco become integers where these are precise enough, for readers
+  // that know KHR_mesh_quantization.
+  bool float_targets = false;
   // Of a glTF asset: numbers that are not finite are mended, each primitive with a note in the report, instead of refused. Vertices
   // without a finite position go with their triangles; other values follow those beside them.
   bool repair = false;

@@ -1,5 +1,4 @@
 #include "document/merge_buffers.h"
-#include "document/merge_buffers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

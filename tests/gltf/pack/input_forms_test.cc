@@ -137,7 +137,8 @@ TEST(InputForms, SparseOverNothing) {
   AssetBuilder builder;
   Json primitive = builder.Primitive(Ball());
   GltfDocument& document = builder.document();
-  const Json sparse = MakeSparseAccessor(MakeFloatAccessor(Ball().positions), true, &document);
+  const AccessorData positions = MakeFloatAccessor(Ball().positions);
+  const Json sparse = MakeSparseAccessors({{&positions, true}}, &document)[0];
   document.json["accessors"][primitive["attributes"]["POSITION"].get<size_t>()] = sparse;
   PackBall(Asset(primitive, &builder));
 }

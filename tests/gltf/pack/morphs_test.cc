@@ -73,8 +73,38 @@ TEST(Morphs, OffsetsThatAreMostlyNothingAreSparse) {
   for (const Json& target : PrimitiveAt(document, {0, 0})["targets"]) {
     EXPECT_TRUE(document.json["accessors"][target["POSITION"].get<size_t>()].contains("sparse"));
   }
-  EXPECT_LT(packed.glb.size() * 4, asset.size());
-  EXPECT_GT(packed.glb.size() * 20, asset.size());
+  EXPECT_LT(packed.glb.size() * 20, asset.size());
+  EXPECT_GT(packed.glb.size() * 40, asset.size());
+}
+
+TEST(Morphs, OffsetsAreIntegersForReadersThatKnowThem) {
+  const Bytes asset = testing::BallWithHills({60, 100, 4, true});
+  PackOptions options;
+  options.encode.levels = LevelChoice::kNever;
+  const auto pack = [&](bool simplify, bool float_targets) {
+    options.simplify = simplify;
+    options.float_targets = float_targets;
+    return PackGltf(asset, options).value();
+  };
+  const auto type_of = [](const PackResult& packed, const char* name) {
+    const GltfDocument document = ParseGltf(packed.glb, "").value();
+    EXPECT_EQ(UsesExtension(document.json, "KHR_mesh_quantization"), RequiresExtension(document.json, "KHR_mesh_quantization"));
+    const Json& target = PrimitiveAt(document, {0, 0})["targets"][0];
+    const AccessorData data = ReadAccessor(document, target[name].get<uint64_t>()).value();
+    EXPECT_EQ(data.type != ComponentType::kFloat, UsesExtension(document.json, "KHR_mesh_quantization"));
+    return data.type;
+  };
+  for (const bool simplify : {false, true}) {
+    const PackResult integers = pack(simplify, false), floats = pack(simplify, true);
+    EXPECT_EQ(type_of(integers, "POSITION"), ComponentType::kInt16);
+    EXPECT_EQ(type_of(integers, "NORMAL"), ComponentType::kInt8);
+    EXPECT_EQ(type_of(floats, "POSITION"), ComponentType::kFloat);
+    EXPECT_EQ(type_of(floats, "NORMAL"), ComponentType::kFloat);
+    EXPECT_LT(10 * integers.glb.size(), 8 * floats.glb.size());
+    EXPECT_GT(3 * integers.glb.size(), floats.glb.size());
+    const double target = integers.report.primitives[0].target_error;
+    EXPECT_LT(WorstError(asset, UnpackGltf(integers.glb, {}).value().glb, kTargets, First), 1.02 * target);
+  }
 }
 
 // A ball that bursts: each triangle has vertices of its own, which its target alone tells from those of the others.

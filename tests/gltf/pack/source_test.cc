@@ -50,7 +50,8 @@ TEST(Source, ReadsSparseAndQuantizedAccessors) {
   EXPECT_EQ(document.json["bufferViews"].back()["byteStride"], 8);  // 6 bytes, aligned
   std::vector<Vec3f> offsets(ball.positions.size());
   offsets[3] = {0, 0, 1};
-  const uint64_t target = AddAccessor(MakeSparseAccessor(MakeFloatAccessor(offsets), true, &document), &document);
+  const AccessorData data = MakeFloatAccessor(offsets);
+  const uint64_t target = AddAccessor(MakeSparseAccessors({{&data, true}}, &document)[0], &document);
   primitive["targets"] = Json::array({{{"POSITION", target}}});
   builder.AddMesh("a", Json::array({primitive}));
   const std::vector<Source> sources = ReadSources(document).value();
