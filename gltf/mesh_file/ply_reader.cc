@@ -27,6 +27,11 @@ class AsciiValues {
     }
     return Status();
   }
+  // A row ends with its line: some programs write values there that the header does not name.
+  void EndRow() {
+    std::string_view rest;
+    scanner_.NextLine(&rest);
+  }
   uint64_t bytes_left() const { return scanner_.bytes_left(); }
   const void* here() const { return scanner_.rest().data(); }
   std::string Where() const { return "line " + std::to_string(header_lines_ + scanner_.line()); }
@@ -56,6 +61,7 @@ class BinaryValues {
     offset_ += size;
     return Status();
   }
+  void EndRow() {}
   uint64_t bytes_left() const { return bytes_.size() - offset_; }
   const void* here() const { return bytes_.data() + offset_; }
   std::string Where() const { return "byte " + std::to_string(offset_); }
@@ -113,6 +119,7 @@ Status ReadRow(const PlyElement& element, Values* values, const Item& item) {
       item(p, value);
     }
   }
+  values->EndRow();
   return Status();
 }
 

@@ -76,6 +76,11 @@ std::string Strips(const std::string& rows) {
          "\n";
 }
 
+// MeshLab writes nine numbers for colors of corners, of which its header names four.
+TEST(PlyReader, ValuesThatTheHeaderDoesNotNameAreLeftAside) {
+  ExpectTheMesh(Parse(FromText(Header("ascii", "4", "2") + "0 0 0 255 1 1\n1 0 0 255\r\n1 1 0 255 0.5\n0\n1.5 0 255\n4 0 1 2 3 9 1 1 1\n3 0 2 3 9 1 1 1")));
+}
+
 TEST(PlyReader, ReadsTriangleStrips) {
   const std::string list = "\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n";
   const StatusOr<TriangleMesh> one = Parse(FromText(Strips("1" + list + "12  0 1 2 3 4 -1 -1 4 3 1 -1 2")));
@@ -137,7 +142,7 @@ TEST(PlyReader, HoldsCountsAgainstTheFile) {
   EXPECT_TRUE(
       Parse(FromText("ply\nformat ascii 1.0\nelement nothing 4000000000\nelement vertex 3\nproperty float x\n"
                      "property float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_index\n"
-                     "end_header\n0 0 0 1 0 0 0 1 0 3 0 1 2"))
+                     "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2"))
           .ok());
 }
 
