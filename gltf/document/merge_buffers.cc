@@ -67,17 +67,28 @@ std::vector<Interval> Union(std::vector<Interval> intervals) {
 struct Range {
   uint64_t begin = 0;
   uint64_t end = 0;
+  bool is_interleaved = false;
 };
 
-// What a part of an accessor refers to, from a multiple of four on, so that all of a view stay aligned to each other.
-// Nothing where that is not inside of the view.
+// What a part of an accessor refers to, from a multiple of four on, so that all of a view stay aligned to each other; whole strides,
+// as readers take them, where it is interleaved. Nothing where that is not inside of the view.
 std::optional<Range> RangeOf(const Json& part, uint64_t size, uint64_t count, const Json& view) {
   const uint64_t length = AsIndex(Find(view, "byteLength")).value_or(0);
   const uint64_t offset = AsIndex(Find(part, "byteOffset")).value_or(0);
   const uint64_t stride = AsIndex(Find(view, "byteStride")).value_or(size);
   if (size == 0 || count == 0 || stride < size || offset > length || size > length - offset) return std::nullopt;
   if (count - 1 > (length - offset - size) / stride) return std::nullopt;
-  return Range{offset - offset % kAlignment, offset + (count - 1) * stride + size};
+  if (stride == size) return Range{offset - offset % kAlignment, offset + count * size};
+  const uint64_t begin = offset - offset % stride;
+  return Range{begin, std::max(std::min(length, begin + count * stride), offset + (count - 1) * stride + size), true};
+}
+
+// What is interleaved stays so: all of it is one range.
+void JoinInterleaved(std::vector<Range>* ranges) {
+  if (std::none_of(ranges->begin(), ranges->end(), [](const Range& range) { return range.is_interleaved; })) return;
+  Range all = ranges->front();
+  for (const Range& range : *ranges) all = {std::min(all.begin, range.begin), std::max(all.end, range.end), true};
+  *ranges = {all};
 }
 
 // Of each view what accessors refer to, if nothing else does; empty of those that are needed as a whole.
@@ -98,6 +109,7 @@ std::vector<std::vector<Range>> AccessorRanges(GltfDocument* document) {
   });
   for (size_t i = 0; i < ranges.size(); ++i) {
     if (ranges[i].size() != num_references[i]) ranges[i].clear();
+    JoinInterleaved(&ranges[i]);
   }
   return ranges;
 }

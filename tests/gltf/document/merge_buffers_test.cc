@@ -132,6 +132,30 @@ TEST(MergeBuffers, SharedViewsShrinkWithTheirAccessors) {
   }
 }
 
+// Three.js reads all strides of what is interleaved, the last one whole, from a multiple of the stride on.
+TEST(MergeBuffers, InterleavedStridesStayWhole) {
+  constexpr uint64_t kStride = 20;
+  GltfDocument before;
+  Bytes bytes;
+  for (uint8_t i = 0; i < 10 * kStride; ++i) bytes.push_back(i);
+  const uint64_t view = AddBufferView(AddBuffer(bytes, &before), 0, bytes.size(), &before);
+  before.json["bufferViews"][view]["byteStride"] = kStride;
+  for (const uint64_t offset : {3 * kStride, 8 * kStride + 8}) {
+    AddAccessor({{"bufferView", view}, {"byteOffset", offset}, {"componentType", 5120}, {"count", 2}, {"type", "VEC3"}}, &before);
+  }
+  for (const size_t dropped : {0u, 1u, 2u}) {
+    GltfDocument document = before;
+    if (dropped < 2) document.json["accessors"][dropped].erase("bufferView");
+    ASSERT_TRUE(MergeBuffers(&document).ok());
+    EXPECT_EQ(document.json["bufferViews"][view]["byteLength"], (dropped < 2 ? 2 : 7) * kStride);
+    for (const size_t kept : {0u, 1u}) {
+      if (kept == dropped) continue;
+      EXPECT_EQ(Values(document, kept), Values(before, kept));
+      EXPECT_EQ(document.json["accessors"][kept].value("byteOffset", uint64_t{0}) % kStride, kept == 0 ? 0u : 8u);
+    }
+  }
+}
+
 TEST(MergeBuffers, SparsePartsMoveAlong) {
   GltfDocument document = SharedViews();
   Bytes bytes(64, 0);
