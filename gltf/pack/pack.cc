@@ -15,7 +15,6 @@
 #include "pack/plan.h"
 #include "pack/repair.h"
 #include "pack/replace_geometry.h"
-#include "pack/round_targets.h"
 #include "pack/single_mesh.h"
 
 namespace lacerta {
@@ -192,15 +191,9 @@ void ReferToExternal(const Bytes& external, const std::string& uri, GltfDocument
   document->json["extensions"][kProgressiveName]["refinements"] = view;
 }
 
-bool HasQuantizedTargets(const PrimitivePlan& plan) {
-  return AreQuantized(plan.targets) || (plan.family != nullptr && AreQuantized(plan.family->groups[plan.group].targets));
-}
-
-void DeclareExtensions(const std::vector<PrimitivePlan>& plans, Fallback fallback, bool progressive, GltfDocument* document) {
+void DeclareExtensions(Fallback fallback, bool progressive, GltfDocument* document) {
   DeclareDraco(document);
-  if (std::any_of(plans.begin(), plans.end(), HasQuantizedTargets)) {
-    for (const char* list : {"extensionsUsed", "extensionsRequired"}) AddExtension(list, "KHR_mesh_quantization", document);
-  }
+  DeclareQuantization(document);
   if (!progressive) return;
   AddExtension("extensionsUsed", kProgressiveName, document);
   if (fallback == Fallback::kNone) AddExtension("extensionsRequired", kProgressiveName, document);
@@ -231,7 +224,7 @@ StatusOr<PackResult> StorePlans(GltfDocument document, const std::vector<Primiti
   if (!streams.empty()) LACERTA_RETURN_IF_ERROR(StoreProgressive(streams, options.fallback,
                                                                   options.external_uri.empty() ? nullptr : &result.external, &pool,
                                                                   &document));
-  DeclareExtensions(plans, options.fallback, !streams.empty(), &document);
+  DeclareExtensions(options.fallback, !streams.empty(), &document);
   unused_views.insert(pool.released_views().begin(), pool.released_views().end());
   DropUnusedViews(unused_views, &document);
   LACERTA_RETURN_IF_ERROR(MergeBuffers(&document));

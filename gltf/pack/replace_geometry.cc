@@ -1,5 +1,6 @@
 #include "pack/replace_geometry.h"
 
+#include <optional>
 #include <utility>
 
 #include "decoder/smooth_normals.h"
@@ -7,6 +8,35 @@
 #include "extension/progressive.h"
 
 namespace lacerta {
+namespace {
+
+void Require(const char* extension, bool is_needed, GltfDocument* document) {
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    if (is_needed) {
+      AddExtension(list, extension, document);
+    } else {
+      RemoveExtension(list, extension, document);
+    }
+  }
+}
+
+// Whether an accessor among those of attributes by name is of a type that the attribute has by KHR_mesh_quantization alone.
+bool AreQuantized(const Json* references, const GltfDocument& document) {
+  if (references == nullptr || !references->is_object()) return false;
+  for (const auto& [name, index] : references->items()) {
+    const std::optional<uint64_t> number = AsIndex(&index);
+    const Json* accessor = number.has_value() ? FindElement(document.json, "accessors", *number) : nullptr;
+    if (accessor == nullptr) continue;
+    const StatusOr<ComponentType> type = ParseComponentType(*accessor);
+    if (!type.ok() || type.value() == ComponentType::kFloat) continue;
+    if (name == "POSITION" || name == "NORMAL" || name == "TANGENT") return true;
+    const bool is_core = IsTrue(Find(*accessor, "normalized")) && (type.value() == ComponentType::kUint8 || type.value() == ComponentType::kUint16);
+    if (name.rfind("TEXCOORD_", 0) == 0 && !is_core) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 NewGeometry PlainGeometry(const TriangleMesh& mesh, bool with_normals, GltfDocument* document) {
   NewGeometry geometry;
@@ -120,15 +150,18 @@ std::set<uint64_t> DracoViews(const GltfDocument& document) {
   return views;
 }
 
-void DeclareDraco(GltfDocument* document) {
-  const bool used = !DracoViews(*document).empty();
-  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
-    if (used) {
-      AddExtension(list, kDracoName, document);
-    } else {
-      RemoveExtension(list, kDracoName, document);
+void DeclareDraco(GltfDocument* document) { Require(kDracoName, !DracoViews(*document).empty(), document); }
+
+void DeclareQuantization(GltfDocument* document) {
+  bool is_needed = false;
+  for (const Place& place : AllPlaces(*document)) {
+    const Json& primitive = PrimitiveAt(*document, place);
+    is_needed = is_needed || AreQuantized(Find(primitive, "attributes"), *document);
+    for (uint64_t t = 0; t < ArraySize(primitive, "targets"); ++t) {
+      is_needed = is_needed || AreQuantized(FindElement(primitive, "targets", t), *document);
     }
   }
+  Require("KHR_mesh_quantization", is_needed, document);
 }
 
 }  // namespace lacerta

@@ -50,6 +50,9 @@ std::set<uint64_t> DracoViews(const GltfDocument& document);
 // Lists KHR_draco_mesh_compression as used and required if a primitive has it, else not.
 void DeclareDraco(GltfDocument* document);
 
+// Lists KHR_mesh_quantization as used and required if attributes or morph targets are of types that core glTF does not have for them, else not.
+void DeclareQuantization(GltfDocument* document);
+
 }  // namespace lacerta
 
 #endif  // LACERTA_PACK_REPLACE_GEOMETRY_H_

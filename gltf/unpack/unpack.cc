@@ -8,12 +8,15 @@
 #include "document/merge_buffers.h"
 #include "document/embed_images.h"
 #include "document/gltf_document.h"
+#include "document/lattice.h"
 #include "document/place.h"
 #include "document/primitive.h"
 #include "extension/progressive.h"
 #include "lacerta/gltf.h"
 #include "pack/accessor_pool.h"
 #include "pack/replace_geometry.h"
+#include "pack/round_targets.h"
+#include "pack/source.h"
 #include "unpack/surface_reader.h"
 
 namespace lacerta {
@@ -105,6 +108,20 @@ void DropProgressive(GltfDocument* document) {
   RemoveExtension("extensionsRequired", kProgressiveName, document);
 }
 
+// What a primitive in Draco form is in core glTF.
+StatusOr<NewGeometry> FromDraco(const Json& primitive, const DecodeLimits& limits, GltfDocument* document) {
+  LACERTA_ASSIGN_OR_RETURN(Primitive decoded, ReadPrimitive(*document, primitive, limits));
+  LACERTA_ASSIGN_OR_RETURN(std::vector<MorphTarget> targets, ReadTargets(*document, primitive, decoded.num_vertices));
+  RestoreUnits(&decoded);
+  NewGeometry geometry = PlainGeometry(decoded, document);
+  if (!AreQuantized(targets)) return geometry;  // which keeps them as they are
+  for (MorphTarget& target : targets) {
+    for (Attribute& offsets : target) offsets.data = AsFloat(offsets.data);
+  }
+  geometry.targets = TargetAccessors(targets, document);
+  return geometry;
+}
+
 }  // namespace
 
 StatusOr<std::vector<ProgressiveSurface>> ReadProgressive(Span<const uint8_t> asset, const UnpackOptions& options) {
@@ -151,14 +168,14 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
       geometry.targets = TargetAccessors(ToTargets(surface.value()), &document);
       ReplaceGeometry({places[0]}, places, std::move(geometry), &pool, &document);
     } else if (PrimitiveExtension(primitive, kDracoName) != nullptr) {
-      StatusOr<Primitive> decoded = ReadPrimitive(document, primitive, options.limits);
-      if (!decoded.ok()) return decoded.status().WithContext(PlaceName(document, places[0]));
-      RestoreUnits(&decoded.value());
-      ReplaceGeometry({places[0]}, places, PlainGeometry(decoded.value(), &document), &pool, &document);
+      StatusOr<NewGeometry> geometry = FromDraco(primitive, options.limits, &document);
+      if (!geometry.ok()) return geometry.status().WithContext(PlaceName(document, places[0]));
+      ReplaceGeometry({places[0]}, places, std::move(geometry).value(), &pool, &document);
     }
   }
   DropProgressive(&document);
   DeclareDraco(&document);
+  DeclareQuantization(&document);
   unused_views.insert(pool.released_views().begin(), pool.released_views().end());
   DropUnusedViews(unused_views, &document);
   LACERTA_RETURN_IF_ERROR(MergeBuffers(&document));
