@@ -45,7 +45,8 @@ TargetTolerance ToleranceOf(const FamilyContext& context, const RoundedFamily& r
   for (const std::vector<AttributeReport>& reports : rounded.reports) {
     for (const AttributeReport& report : reports) degrees = std::max(degrees, report.unit == "degrees" ? report.error : 0.0);
   }
-  return {RoomBeside(rounded.error, context.Error()), RoomBeside(degrees, context.options->attributes.normal_degrees) / kDegreesPerRadian};
+  return {std::min(RoomBeside(rounded.error, context.Error()), kShareOfOffsets * context.Error()),
+          RoomBeside(degrees, context.options->attributes.normal_degrees) / kDegreesPerRadian};
 }
 
 // Fails with kUnsupported where morph targets cannot follow.

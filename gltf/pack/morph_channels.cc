@@ -140,9 +140,8 @@ StatusOr<MorphChannels> MorphChannels::Create(const FamilyMeter& plain,
                                               const std::vector<const std::vector<MorphTarget>*>& targets,
                                               const std::vector<TargetMix>& mixes, bool round_targets, uint64_t texel_side) {
   LACERTA_RETURN_IF_ERROR(plain.status());
-  constexpr double kShare = 0.2;  // of what is allowed, for plain targets
   MorphChannels result;
-  if (round_targets) result.tolerance_ = {kShare * plain.error(), kShare * plain.attribute_targets().normal_degrees / kDegreesPerRadian};
+  if (round_targets) result.tolerance_ = {kShareOfOffsets * plain.error(), kShareOfOffsets * plain.attribute_targets().normal_degrees / kDegreesPerRadian};
   std::vector<MorphedPrimitive> originals;
   size_t num_targets = 0;
   for (size_t m = 0; m < targets.size(); ++m) {

@@ -14,6 +14,9 @@ struct TargetTolerance {
   double directions = 0.0;  // of normals and tangents, radians
 };
 
+// Of what is allowed, in positions: several targets may show at once, and what each is off adds up.
+inline constexpr double kShareOfOffsets = 0.2;
+
 // What is left of an error that may be `allowed` and is `taken` by something independent.
 double RoomBeside(double taken, double allowed);
 

@@ -35,8 +35,7 @@ SurfaceErrors ErrorsOf(const FamilyMeter& plain, const FamilyMeter& morphed, Sur
 
 // What the errors of the simplified surface leave to directions; positions are measured again once they are rounded.
 TargetTolerance ToleranceOf(const FamilyMeter& morphed, const SurfaceErrors& errors) {
-  constexpr double kShare = 0.2;  // of the error, in positions
-  TargetTolerance tolerance{kShare * morphed.error(), std::numeric_limits<double>::infinity()};
+  TargetTolerance tolerance{kShareOfOffsets * morphed.error(), std::numeric_limits<double>::infinity()};
   for (size_t a = 0; a < errors.attributes.size(); ++a) {
     const std::string& name = morphed.original().attributes[a].name;
     if (!IsTargetAttribute(name) || IsTargetPosition(name)) continue;
