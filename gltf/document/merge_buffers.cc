@@ -191,61 +191,98 @@ class FallbackBuffer {
   Json extensions_ = Json::object();
 };
 
+struct View {
+  Interval place;                             // all of it, decoded
+  std::vector<Range> ranges;                  // what is needed of it; empty: all
+  std::optional<CompressedBytes> compressed;  // it stays so
+};
+
+// Where compressed bytes are not worth keeping, views lose the extension that names them.
+StatusOr<std::vector<View>> FindViews(GltfDocument* document) {
+  const std::vector<Turn> turns = TurnsOfViews(document->json);
+  std::vector<std::vector<Range>> ranges = AccessorRanges(document);
+  std::vector<std::optional<CompressedBytes>> compressed = ChooseCompressed(&ranges, document);
+  std::vector<View> views;
+  for (size_t i = 0; i < ranges.size(); ++i) {
+    LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(*document, i));
+    const Json& json = document->json["bufferViews"][i];
+    const uint64_t begin = AsIndex(Find(json, "byteOffset")).value_or(0);
+    views.push_back({{*AsIndex(Find(json, "buffer")), begin, begin + bytes.size(), turns[i]}, std::move(ranges[i]), compressed[i]});
+  }
+  return views;
+}
+
+// Disjoint.
+std::vector<Interval> UsedParts(const std::vector<View>& views) {
+  std::vector<Interval> used;
+  for (const auto& [place, ranges, compressed] : views) {
+    if (compressed.has_value()) {
+      used.push_back({compressed->buffer, compressed->offset, compressed->offset + compressed->length, place.turn});
+    } else if (ranges.empty() && place.begin < place.end) {
+      used.push_back(place);
+    }
+    for (const Range& range : ranges) used.push_back({place.buffer, place.begin + range.begin, place.begin + range.end, place.turn});
+  }
+  return Union(std::move(used));
+}
+
+// Where what is needed of a view is after the move.
+Range RangeAfter(const std::vector<Interval>& used, const View& view) {
+  const Interval& place = view.place;
+  if (view.ranges.empty()) {
+    const uint64_t begin = MovedTo(used, place.buffer, place.begin);
+    return {begin, begin + (place.end - place.begin)};
+  }
+  Range all{std::numeric_limits<uint64_t>::max(), 0};
+  for (const Range& range : view.ranges) {
+    const uint64_t begin = MovedTo(used, place.buffer, place.begin + range.begin);
+    all = {std::min(all.begin, begin), std::max(all.end, begin + (range.end - range.begin))};
+  }
+  return all;
+}
+
+void MoveViews(const std::vector<Interval>& used, FallbackBuffer* fallback, std::vector<View>* views, GltfDocument* document) {
+  for (size_t i = 0; i < views->size(); ++i) {
+    View& view = (*views)[i];
+    Json& json = document->json["bufferViews"][i];
+    if (view.compressed.has_value()) {
+      const CompressedBytes& bytes = *view.compressed;
+      view.place.moved_to = fallback->Add(BufferViewBytes(*document, i).value(), bytes.extension);
+      PlaceCompressedBytes({bytes.extension, 0, MovedTo(used, bytes.buffer, bytes.offset), bytes.length}, &json);
+    } else {
+      const Range after = RangeAfter(used, view);
+      json["byteLength"] = after.end - after.begin;
+      view.place.moved_to = after.begin;
+    }
+    json["buffer"] = view.compressed.has_value() ? 1 : 0;
+    PlaceAt(view.place.moved_to, &json);
+  }
+}
+
+// After MoveViews.
+void MoveAccessors(const std::vector<Interval>& used, const std::vector<View>& views, GltfDocument* document) {
+  VisitAccessorParts(document->json, [&](Json& part, uint64_t, uint64_t) {
+    const std::optional<uint64_t> view = AsIndex(Find(part, "bufferView"));
+    if (!view.has_value() || *view >= views.size() || views[static_cast<size_t>(*view)].ranges.empty()) return;
+    const Interval& place = views[static_cast<size_t>(*view)].place;
+    const uint64_t offset = place.begin + AsIndex(Find(part, "byteOffset")).value_or(0);
+    PlaceAt(MovedTo(used, place.buffer, offset) - place.moved_to, &part);
+  });
+}
+
 }  // namespace
 
 Status MergeBuffers(GltfDocument* document) {
-  const std::vector<Turn> turns = TurnsOfViews(document->json);
-  std::vector<std::vector<Range>> ranges = AccessorRanges(document);
-  const std::vector<std::optional<CompressedBytes>> compressed = ChooseCompressed(&ranges, document);
-  std::vector<Interval> places;  // of the views
-  std::vector<Interval> used;
-  FallbackBuffer fallback;
-  for (size_t i = 0; i < ranges.size(); ++i) {
-    LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(*document, i));
-    const Json& view = *FindElement(document->json, "bufferViews", i);
-    const uint64_t buffer = *AsIndex(Find(view, "buffer")), begin = AsIndex(Find(view, "byteOffset")).value_or(0);
-    places.push_back({buffer, begin, begin + bytes.size(), turns[i]});
-    if (compressed[i].has_value()) {
-      used.push_back({compressed[i]->buffer, compressed[i]->offset, compressed[i]->offset + compressed[i]->length, turns[i]});
-      places.back().moved_to = fallback.Add(bytes, compressed[i]->extension);
-      continue;
-    }
-    for (const Range& range : ranges[i]) used.push_back({buffer, begin + range.begin, begin + range.end, turns[i]});
-    if (ranges[i].empty() && !bytes.empty()) used.push_back(places.back());
-  }
-  used = Union(std::move(used));
+  LACERTA_ASSIGN_OR_RETURN(std::vector<View> views, FindViews(document));
+  std::vector<Interval> used = UsedParts(views);
   Bytes merged = Move(document->buffers, &used);
   constexpr uint64_t kRoomForJson = uint64_t{1} << 30;
   if (merged.size() > std::numeric_limits<uint32_t>::max() - kRoomForJson) {
     return Unsupported("the result would not fit into a GLB (4 GB); split the asset");
   }
-  for (size_t i = 0; i < ranges.size(); ++i) {
-    Interval& place = places[i];
-    Json& view = document->json["bufferViews"][i];
-    if (compressed[i].has_value()) {
-      PlaceCompressedBytes({compressed[i]->extension, 0, MovedTo(used, compressed[i]->buffer, compressed[i]->offset), compressed[i]->length}, &view);
-      view["buffer"] = 1;
-      PlaceAt(place.moved_to, &view);
-      continue;
-    }
-    Range all;  // where the view is after the move
-    all.begin = ranges[i].empty() ? MovedTo(used, place.buffer, place.begin) : merged.size();
-    for (const Range& range : ranges[i]) {
-      const uint64_t begin = MovedTo(used, place.buffer, place.begin + range.begin);
-      all = {std::min(all.begin, begin), std::max(all.end, begin + (range.end - range.begin))};
-    }
-    view["buffer"] = 0;
-    PlaceAt(all.begin, &view);
-    if (!ranges[i].empty()) view["byteLength"] = all.end - all.begin;
-    place.moved_to = all.begin;
-  }
-  VisitAccessorParts(document->json, [&](Json& part, uint64_t, uint64_t) {
-    const std::optional<uint64_t> view = AsIndex(Find(part, "bufferView"));
-    if (!view.has_value() || *view >= places.size() || ranges[static_cast<size_t>(*view)].empty()) return;
-    const Interval& place = places[static_cast<size_t>(*view)];
-    const uint64_t offset = place.begin + AsIndex(Find(part, "byteOffset")).value_or(0);
-    PlaceAt(MovedTo(used, place.buffer, offset) - place.moved_to, &part);
-  });
+  FallbackBuffer fallback;
+  MoveViews(used, &fallback, &views, document);
+  MoveAccessors(used, views, document);
   document->buffers.clear();
   document->json.erase("buffers");
   if (!merged.empty()) AddBuffer(std::move(merged), document);
