@@ -4,14 +4,11 @@
 #include <limits>
 #include <utility>
 
+#include "document/alignment.h"
 #include "document/view_references.h"
 
 namespace lacerta {
 namespace {
-
-constexpr uint64_t kAlignment = 4;
-
-size_t AlignedSize(size_t size) { return (size + kAlignment - 1) / kAlignment * kAlignment; }
 
 const char* TypeName(uint32_t components) {
   constexpr const char* kNames[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
@@ -89,7 +86,7 @@ Json MakeAccessor(const AccessorData& data, AccessorUse use, bool bounds, GltfDo
   constexpr uint32_t kArrayBuffer = 34962;
   constexpr uint32_t kElementArrayBuffer = 34963;
   const size_t size = data.components * ComponentSize(data.type);
-  const size_t stride = use == AccessorUse::kAttribute ? AlignedSize(size) : size;
+  const size_t stride = use == AccessorUse::kAttribute ? Aligned(size) : size;
   Bytes bytes;
   if (stride == size) {
     bytes = data.bytes;
@@ -116,16 +113,13 @@ bool HasNarrowIndices(const AccessorData& data) {
   return data.count <= uint64_t{std::numeric_limits<uint16_t>::max()} + 1;
 }
 
-uint64_t DenseSize(const AccessorData& data) { return data.count * AlignedSize(data.components * ComponentSize(data.type)); }
+uint64_t DenseSize(const AccessorData& data) { return data.count * Aligned(data.components * ComponentSize(data.type)); }
 
 uint64_t SparseSize(const AccessorData& data) {
   constexpr uint64_t kJson = 140;  // of a sparse part
   const uint64_t index = HasNarrowIndices(data) ? sizeof(uint16_t) : sizeof(uint32_t);
   return NonZeroElements(data).size() * (data.components * ComponentSize(data.type) + index) + kJson;
 }
-
-// Appends zeros until something of elements of that size may follow.
-void Align(size_t size, Bytes* bytes) { bytes->resize((bytes->size() + size - 1) / size * size); }
 
 }  // namespace
 
@@ -142,8 +136,8 @@ std::vector<Json> MakeSparseAccessors(const std::vector<SparseSource>& sources, 
     if (elements.empty() && data->count > 0) elements.push_back(0);  // not every reader knows accessors without any data
     const ComponentType type = HasNarrowIndices(*data) ? ComponentType::kUint16 : ComponentType::kUint32;
     const size_t size = data->components * ComponentSize(data->type);
-    Align(ComponentSize(type), &indices);
-    Align(ComponentSize(data->type), &values);
+    indices.resize(Aligned(indices.size(), ComponentSize(type)));
+    values.resize(Aligned(values.size(), ComponentSize(data->type)));
     Json index_part = {{"bufferView", index_view}, {"componentType", static_cast<uint32_t>(type)}}, value_part = {{"bufferView", value_view}};
     PlaceAt(indices.size(), &index_part);
     PlaceAt(values.size(), &value_part);

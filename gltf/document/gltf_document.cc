@@ -4,6 +4,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "document/alignment.h"
 #include "document/meshopt.h"
 #include "document/uri.h"
 
@@ -172,10 +173,10 @@ StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& f
 
 Bytes FormatGlb(const GltfDocument& document) {
   std::string json = document.json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  json.append((4 - json.size() % 4) % 4, ' ');
+  json.resize(Aligned(json.size()), ' ');
   const Bytes empty;
   const Bytes& bin = document.buffers.empty() ? empty : document.buffers[0];
-  const size_t padding = (4 - bin.size() % 4) % 4;
+  const size_t padding = Aligned(bin.size()) - bin.size();
   const size_t bin_chunk = bin.empty() ? 0 : 8 + bin.size() + padding;
   Bytes bytes;
   bytes.reserve(20 + json.size() + bin_chunk);

@@ -8,14 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "document/alignment.h"
 #include "document/buffer_edit.h"
 #include "document/meshopt.h"
 #include "document/view_references.h"
 
 namespace lacerta {
 namespace {
-
-constexpr uint64_t kAlignment = 4;
 
 // What is needed to show anything, the progressive streams, and images, which a surface can be shown without: the order in
 // which a client that reads a file as it arrives wants them.
@@ -174,7 +173,7 @@ class FallbackBuffer {
  public:
   // Returns where they would be.
   uint64_t Add(Span<const uint8_t> decoded, const char* extension) {
-    bytes_.resize((bytes_.size() + kAlignment - 1) / kAlignment * kAlignment);
+    bytes_.resize(Aligned(bytes_.size()));
     const uint64_t offset = bytes_.size();
     bytes_.insert(bytes_.end(), decoded.begin(), decoded.end());
     extensions_[extension] = {{"fallback", true}};

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "document/accessor.h"
+#include "document/alignment.h"
 
 namespace lacerta {
 namespace {
@@ -16,13 +17,12 @@ uint64_t SizeOfComponent(const Json& object) {
 
 // glTF 2.0 section 3.6.2.4: the columns of matrices begin at multiples of four bytes.
 uint64_t ElementSize(const Json& accessor) {
-  constexpr uint64_t kAlignment = 4;
   const uint64_t component = SizeOfComponent(accessor);
   const std::string type = AsString(Find(accessor, "type"));
   if (type == "SCALAR") return component;
   const uint64_t order = type.size() == 4 && type[3] >= '2' && type[3] <= '4' ? static_cast<uint64_t>(type[3] - '0') : 0;
   if (type.rfind("VEC", 0) == 0) return order * component;
-  if (type.rfind("MAT", 0) == 0) return order * ((order * component + kAlignment - 1) / kAlignment * kAlignment);
+  if (type.rfind("MAT", 0) == 0) return order * Aligned(order * component);
   return 0;
 }
 
