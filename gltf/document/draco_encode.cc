@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -115,6 +116,19 @@ bool AllFinite(const Attribute& attribute) {
   return true;
 }
 
+// Stock Draco counts how often each integer occurs up to the largest difference between two of an attribute.
+bool CanBeCounted(const AccessorData& data) {
+  constexpr uint32_t kMostDifference = uint32_t{1} << kMostLatticeBits;
+  if (data.type != ComponentType::kUint32) return true;
+  uint32_t least = std::numeric_limits<uint32_t>::max(), most = 0;
+  for (uint64_t i = 0; i < data.count * data.components; ++i) {
+    const uint32_t value = data.Uint(i / data.components, static_cast<uint32_t>(i % data.components));
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  return most < least || most - least <= kMostDifference;
+}
+
 float MarkRange(const Lattice& lattice) { return static_cast<float>((int64_t{1} << lattice.bits) - 1); }
 
 // Writes the true lattice over the mark.
@@ -197,6 +211,7 @@ StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const Dr
   if (primitive.triangles.empty()) return Unsupported("holds no triangles");
   for (const Attribute& attribute : primitive.attributes) {
     if (!AllFinite(attribute)) return Unsupported(attribute.name + " holds values that are not finite");
+    if (!CanBeCounted(attribute.data)) return Unsupported(attribute.name + " holds integers that are too far apart for Draco, which would take gigabytes for them");
   }
   const Primitive rounded = RoundAttributes(primitive, precision);
   LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, ToDraco(rounded, precision));

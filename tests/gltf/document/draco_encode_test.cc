@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "decoder/smooth_normals.h"
@@ -59,6 +60,32 @@ TEST(DracoEncode, KeepsIntegersAndTheLattice) {
     const double move = LargestMove(primitive, encoded.value().decoded);
     EXPECT_LE(move, 0.9 * step) << scale;  // half the diagonal of a cell
     EXPECT_GE(move, 0.1 * step) << scale;
+  }
+}
+
+// Draco would take four bytes for each integer between the least and the largest.
+TEST(DracoEncode, IntegersFarApartAreRefused) {
+  const TriangleMesh mesh = testing::WavySphere(4, 5);
+  const auto encode = [&](uint32_t least, uint32_t most) {
+    Primitive primitive = WithTexture(mesh);
+    AccessorData names{ComponentType::kUint32, 1, false, mesh.positions.size(), Bytes(4 * mesh.positions.size(), 0)};
+    for (size_t i = 0; i < names.count; ++i) {
+      const uint32_t value = i % 2 == 0 ? least : most;
+      std::memcpy(names.bytes.data() + 4 * i, &value, sizeof(value));
+    }
+    primitive.attributes.push_back({"_NAME", names});
+    return EncodeDracoPrimitive(primitive, Precision({-1.1f, -1.1f, -1.1f}, {1.1f, 1.1f, 1.1f}, 10));
+  };
+  const auto refused = encode(0, (1u << 24) + 1);
+  EXPECT_EQ(refused.status().code(), StatusCode::kUnsupported);
+  EXPECT_THAT(refused.status().message(), ::testing::HasSubstr("_NAME holds integers that are too far apart"));
+  for (const uint32_t least : {0u, 4'000'000'000u}) {
+    constexpr uint32_t kNear = 1u << 16;
+    const auto encoded = encode(least, least + kNear);
+    ASSERT_TRUE(encoded.ok()) << encoded.status().message();
+    const AccessorData& decoded = encoded.value().decoded.Find("_NAME")->data;
+    for (uint64_t i = 0; i < decoded.count; ++i) EXPECT_EQ((decoded.Uint(i, 0) - least) % kNear, 0u);
+    EXPECT_THAT(encode(least, least + (1u << 24)).status().message(), ::testing::Not(::testing::HasSubstr("too far apart")));
   }
 }
 
