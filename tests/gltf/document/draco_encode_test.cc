@@ -79,13 +79,12 @@ TEST(DracoEncode, IntegersFarApartAreRefused) {
   const auto refused = encode(0, (1u << 24) + 1);
   EXPECT_EQ(refused.status().code(), StatusCode::kUnsupported);
   EXPECT_THAT(refused.status().message(), ::testing::HasSubstr("_NAME holds integers that are too far apart"));
-  for (const uint32_t least : {0u, 4'000'000'000u}) {
-    constexpr uint32_t kNear = 1u << 16;
+  for (const uint32_t least : {0u, 2'000'000'000u}) {
+    constexpr uint32_t kNear = 1u << 24;
     const auto encoded = encode(least, least + kNear);
     ASSERT_TRUE(encoded.ok()) << encoded.status().message();
     const AccessorData& decoded = encoded.value().decoded.Find("_NAME")->data;
     for (uint64_t i = 0; i < decoded.count; ++i) EXPECT_EQ((decoded.Uint(i, 0) - least) % kNear, 0u);
-    EXPECT_THAT(encode(least, least + (1u << 24)).status().message(), ::testing::Not(::testing::HasSubstr("too far apart")));
   }
 }
 
