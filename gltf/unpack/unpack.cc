@@ -111,14 +111,14 @@ void DropProgressive(GltfDocument* document) {
 // What a primitive in Draco form is in core glTF.
 StatusOr<NewGeometry> FromDraco(const Json& primitive, const DecodeLimits& limits, GltfDocument* document) {
   LACERTA_ASSIGN_OR_RETURN(Primitive decoded, ReadPrimitive(*document, primitive, limits));
-  LACERTA_ASSIGN_OR_RETURN(std::vector<MorphTarget> targets, ReadTargets(*document, primitive, decoded.num_vertices));
+  StatusOr<std::vector<MorphTarget>> targets = ReadTargets(*document, primitive, decoded.num_vertices);
   RestoreUnits(&decoded);
   NewGeometry geometry = PlainGeometry(decoded, document);
-  if (!AreQuantized(targets)) return geometry;  // which keeps them as they are
-  for (MorphTarget& target : targets) {
+  if (!targets.ok() || !AreQuantized(targets.value())) return geometry;  // which keeps them as they are, accessors without data too
+  for (MorphTarget& target : targets.value()) {
     for (Attribute& offsets : target) offsets.data = AsFloat(offsets.data);
   }
-  geometry.targets = TargetAccessors(targets, document);
+  geometry.targets = TargetAccessors(targets.value(), document);
   return geometry;
 }
 
