@@ -13,9 +13,9 @@
 namespace lacerta {
 namespace {
 
-// Levels that bring a base to at least as many vertices as the input has; chords of the remesh then cost little.
-int LevelsFor(double num_base_vertices, double num_input_vertices) {
-  constexpr double kVertexShare = 0.7;
+// Levels to begin with: those that bring a base to a third of the input's vertices, where chords of the remesh may cost little already.
+int FirstLevels(double num_base_vertices, double num_input_vertices) {
+  constexpr double kVertexShare = 0.35;
   constexpr int kMostLevels = 10;
   int levels = 0;
   for (double v = num_base_vertices; v < kVertexShare * num_input_vertices && levels < kMostLevels; v *= 4) ++levels;
@@ -51,7 +51,7 @@ StatusOr<FittedRemesh> RemeshForPsnr(const RefinableSurface& surface, uint32_t n
   constexpr double kMostGain = 6;  // dB that the fit brings
   const double num_input = static_cast<double>(surface.surface.mesh().positions.size());
   std::unique_ptr<PiercedBase> pierced;
-  for (int levels = LevelsFor(num_base_vertices, num_input);; ++levels) {
+  for (int levels = FirstLevels(num_base_vertices, num_input);; ++levels) {
     LACERTA_ASSIGN_OR_RETURN(pierced, PierceUnreversed(surface, num_base_vertices, levels, coding, std::move(pierced)));
     const bool may_grow = 4 * static_cast<double>(pierced->refined().mesh.positions.size()) <= MostVertices(num_input);
     if (may_grow && IsBelow(psnr - kMostGain, pierced->Remesh(), meter)) continue;  // fitted or not
