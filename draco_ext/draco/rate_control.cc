@@ -196,17 +196,18 @@ class Ladder {
     return result;
   }
 
-  // Bases that other simplifications have at the size of the best, and then beside it where they are near.
+  // Bases that other simplifications have at the size of the best, and then beside it where they are near or where the best has no neighbor.
   std::vector<BaseChoice> OfOtherSimplifications(const BaseChoice& best) const {
     std::vector<BaseChoice> result;
     for (size_t s = 0; s < simplifications_.size(); ++s) {
       const BaseChoice other{s, best.rung};
       if (IsMissing(other)) {
         result.push_back(other);
-      } else if (tried_.count(other) > 0 && !IsWorse(other, best, effort_.much_worse / 2)) {
-        for (const int r : {best.rung - kStride, best.rung + kStride}) {
-          if (IsMissing(other.At(r))) result.push_back(other.At(r));
-        }
+        continue;
+      }
+      const bool is_near = tried_.count(other) > 0 && !IsWorse(other, best, effort_.much_worse / 2);
+      for (const int r : {best.rung - kStride, best.rung + kStride}) {
+        if ((is_near || !IsOnLadder(best.At(r))) && IsMissing(other.At(r))) result.push_back(other.At(r));
       }
     }
     return result;
