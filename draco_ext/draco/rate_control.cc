@@ -17,11 +17,12 @@
 
 #include "draco/fitted_remesh.h"
 #include "draco/for_each_candidate.h"
+#include "draco/usual_base.h"
 
 namespace lacerta {
 namespace {
 
-// Base sizes tried: the rungs of a ladder, walked in strides from where streams of that quality have their base on typical surfaces.
+// Base sizes tried: the rungs of a ladder, walked in strides from where streams of that quality usually have their base.
 constexpr double kFirstRung = 48 / (1.5 * 1.5 * 1.5), kStrideRatio = 1.5;
 constexpr int kStride = 2;  // rungs
 constexpr double kUsualSize = 48;  // that every surface may have and where none begins below: streams on smaller bases may leap over their target
@@ -67,12 +68,11 @@ class Ladder {
     last_ = std::max(first_.front(), RungOfSize(std::max(kUsualSize, kLargestShare * num_input_)));
   }
 
-  // Scores the rungs around the typical one and goes on until one on either side of the best is known to be much worse, or two to be
+  // Scores the rungs around the usual one and goes on until one on either side of the best is known to be much worse, or two to be
   // worse: one alone may be a fluke of its simplification. Other simplifications are looked at where the best one is. Returns the most promising
   // bases, best first; at least one.
   StatusOr<std::vector<BaseChoice>> FindBest(const std::function<void(double, const char*)>& progress, const std::function<bool(double)>& is_outdone) {
-    const double typical_size = std::max(kUsualSize, TypicalBase(TypicalPsnr(target_, num_input_)));
-    const int first = std::clamp(RungOfSize(typical_size), first_.front(), last_);
+    const int first = UsualRung();
     const Status outdone = Unsupported("a stream without levels is much smaller");
     if (is_outdone(LeastBytesFrom(std::max(first - kStride, first_.front())))) return outdone;
     Visit(effort_.enough_bases == 1 ? std::vector<BaseChoice>{{0, first}} : std::vector<BaseChoice>{{0, first - kStride}, {0, first}, {0, first + kStride}}, {});
@@ -144,6 +144,21 @@ class Ladder {
 
   int RungOfSize(double size) const {
     return std::max(0, kStride * static_cast<int>(std::lround(std::log(size / kFirstRung) / std::log(kStrideRatio))));
+  }
+
+  // Where streams of that quality usually have their base: the smallest that is near enough to the surface by itself.
+  int UsualRung() const {
+    const double enough = UsualBasePsnr(TypicalPsnr(target_, num_input_));
+    int low = std::clamp(RungOfSize(kUsualSize), first_.front(), last_), high = last_;
+    while (low < high) {
+      const int middle = low + (high - low) / (2 * kStride) * kStride;
+      if (BasePsnr(simplifications_.front(), RungSize(middle), meter_) >= enough) {
+        high = middle;
+      } else {
+        low = middle + kStride;
+      }
+    }
+    return low;
   }
 
   // Of streams with a base of that rung or a larger one. Vertices of bases usually take three bytes and more.

@@ -1,0 +1,70 @@
+// Bases by themselves, which tell where the search for a base size begins.
+#include "draco/usual_base.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <utility>
+
+#include "draco_ext/remesh/remeshing.h"
+#include "remesh/base_parts.h"
+#include "shapes/shapes.h"
+
+namespace lacerta {
+namespace {
+
+// A surface with bases, and what stands still beside it.
+struct Simplified {
+  explicit Simplified(const TriangleMesh& m, TriangleMesh beside = {})
+      : mesh(m),
+        surface(mesh, testing::TopologyOf(mesh)),
+        history(testing::Decimated(mesh)),
+        still(std::move(beside)),
+        meter(SurfaceDistanceMeter::Create(Together(mesh, still)).value()) {}
+  double PsnrAt(uint32_t num_vertices) const { return BasePsnr({surface, history, still}, num_vertices, meter); }
+
+  TriangleMesh mesh;
+  InputSurface surface;
+  CollapseHistory history;
+  TriangleMesh still;
+  SurfaceDistanceMeter meter;
+};
+
+TEST(BasePsnrTest, FourTimesTheVerticesBringTwelveDecibels) {
+  const Simplified sphere(shapes::Icosphere(4));
+  const double coarse = sphere.PsnrAt(40), fine = sphere.PsnrAt(160), finest = sphere.PsnrAt(640);
+  EXPECT_NEAR(fine - coarse, 12, 3);  // chords of a smooth surface: four times as near
+  EXPECT_NEAR(finest - fine, 12, 3);
+  EXPECT_GT(coarse, 25);
+  EXPECT_LT(coarse, 40);
+}
+
+TEST(BasePsnrTest, AllVerticesAreTheSurfaceAndNoneTheCoarsest) {
+  const Simplified sphere(shapes::Icosphere(3));
+  const auto num_input = static_cast<uint32_t>(sphere.mesh.positions.size());
+  EXPECT_GT(sphere.PsnrAt(num_input), 120);
+  EXPECT_GT(sphere.PsnrAt(num_input + 1), 120);
+  EXPECT_EQ(sphere.PsnrAt(0), sphere.PsnrAt(num_input - sphere.history.num_collapses()));
+  EXPECT_LT(sphere.PsnrAt(0), 40);
+}
+
+TEST(BasePsnrTest, ShapesWithMuchInThemNeedLargerBases) {
+  const Simplified smooth(shapes::Icosphere(4)), rough(shapes::BumpySphere(4, 0.0f, 0.02f));
+  EXPECT_GT(smooth.PsnrAt(640), rough.PsnrAt(640) + 3);
+  EXPECT_LT(smooth.PsnrAt(640), rough.PsnrAt(640) + 20);
+}
+
+TEST(BasePsnrTest, WhatStandsStillIsThere) {
+  const Simplified alone(shapes::Icosphere(4)), accompanied(shapes::Icosphere(4), testing::Moved(shapes::Icosphere(1), {5, 0, 0}));
+  EXPECT_GT(accompanied.PsnrAt(160), alone.PsnrAt(160));  // as near, of a larger whole
+  EXPECT_LT(accompanied.PsnrAt(160), alone.PsnrAt(160) + 14);
+}
+
+TEST(UsualBasePsnrTest, GrowsLessThanTheStreams) {
+  EXPECT_GT(UsualBasePsnr(80), UsualBasePsnr(60) + 4);
+  EXPECT_LT(UsualBasePsnr(80), UsualBasePsnr(60) + 16);
+  EXPECT_LT(UsualBasePsnr(60), 50);
+}
+
+}  // namespace
+}  // namespace lacerta
