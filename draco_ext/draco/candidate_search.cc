@@ -86,7 +86,7 @@ double CandidateSearch::EstimatePsnr(const CodedStream& stream) const {
 
 double CandidateSearch::MeasurePsnr(const Attempt& attempt, uint64_t num_samples) {
   ++measurements_;
-  return Psnr(DecodedDistance(meter_, attempt.stream.FinestMesh(), SurfaceDistanceOptions::RmsOnly(num_samples)), meter_.diagonal());
+  return DecodedPsnr(meter_, attempt.stream.FinestMesh(), num_samples);
 }
 
 CandidateSearch::Bracket CandidateSearch::AroundGoal() const {

@@ -31,7 +31,7 @@ double MostVertices(double num_input_vertices) {
 
 double PsnrOf(const NormalMesh& remesh, const SurfaceDistanceMeter& meter, uint64_t num_samples) {
   const TriangleMesh finest = MeshAtLevel(remesh.mesh, remesh.mesh.num_levels).value();
-  return Psnr(DecodedDistance(meter, finest, SurfaceDistanceOptions::RmsOnly(num_samples)), meter.diagonal());
+  return DecodedPsnr(meter, finest, num_samples);
 }
 
 constexpr uint64_t kRoughSamples = 30'000;

@@ -62,7 +62,7 @@ StatusOr<std::unique_ptr<PiercedBase>> PierceUnreversed(const RefinableSurface& 
   constexpr double kLargestGrowth = 1.25;
   constexpr double kFreeVertices = 8;  // that any base may have more
   const auto num_vertices = static_cast<uint32_t>(input.surface.mesh().positions.size());
-  const uint32_t time = std::min(input.history.num_collapses(), num_vertices - std::min(num_vertices, num_base_vertices));
+  const uint32_t time = input.history.CollapsesTo(num_base_vertices);
   std::unique_ptr<PiercedBase> best = std::move(begun);
   if (!best) {
     LACERTA_ASSIGN_OR_RETURN(best, PiercedBase::Make(input, time, {}, coding));

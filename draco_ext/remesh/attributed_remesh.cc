@@ -47,9 +47,7 @@ StatusOr<CollapseHistory> DecimateAttributed(const AttributedParts& parts) {
 StatusOr<AttributedNormalMesh> RemeshAttributed(const AttributedParts& parts, const InputSurface& surface, const CollapseHistory& history,
                                                 const AttributedRemeshOptions& options) {
   const TriangleMesh& mesh = parts.refined.surface;
-  const auto num_vertices = static_cast<uint32_t>(mesh.positions.size());
-  const uint32_t time = std::min(history.num_collapses(), num_vertices - std::min(num_vertices, options.num_base_vertices));
-  BaseDomain domain(history, time);
+  BaseDomain domain(history, history.CollapsesTo(options.num_base_vertices));
   const uint32_t num_refined = domain.num_vertices();
   const TriangleMesh base = Together({domain.PositionsOn(mesh), domain.triangles()}, parts.still.surface);
   BaseOrder order = Unchanged(base);

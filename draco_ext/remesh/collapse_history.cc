@@ -39,6 +39,11 @@ CollapseHistory::CollapseHistory(const Topology& topology)
   }
 }
 
+uint32_t CollapseHistory::CollapsesTo(uint32_t num_vertices) const {
+  const auto num_input = static_cast<uint32_t>(roles_.size());
+  return std::min(num_collapses(), num_input - std::min(num_input, num_vertices));
+}
+
 uint32_t CollapseHistory::Append(uint32_t removed, const std::vector<uint32_t>& ring, const std::vector<Vec2d>& chart,
                                  const std::vector<uint32_t>& old_faces, int kept) {
   const uint32_t time = num_collapses();

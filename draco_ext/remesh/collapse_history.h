@@ -54,6 +54,8 @@ class CollapseHistory {
                   const std::vector<uint32_t>& old_faces, int kept);
 
   uint32_t num_collapses() const { return static_cast<uint32_t>(collapses_.size()); }
+  // How many of them leave `num_vertices` vertices; all where the coarsest mesh has more, none where the input has fewer.
+  uint32_t CollapsesTo(uint32_t num_vertices) const;
   uint32_t num_faces() const { return static_cast<uint32_t>(faces_.size()); }  // of all times
   const Triangle& face(uint32_t f) const { return faces_[f]; }
   // Whether the side of a face opposite to one of its corners is an edge of a curve.

@@ -71,6 +71,14 @@ DomainPoint RandomPointOn(size_t face, std::mt19937* random) {
   return {static_cast<uint32_t>(face), {1 - a - b, a, b}};
 }
 
+TEST(CollapseHistory, KnowsHowManyCollapsesLeaveSoManyVertices) {
+  const CollapseHistory history = AfterOneCollapse(4);  // 8 vertices
+  EXPECT_EQ(history.CollapsesTo(9), 0u);
+  EXPECT_EQ(history.CollapsesTo(8), 0u);
+  EXPECT_EQ(history.CollapsesTo(7), 1u);
+  EXPECT_EQ(history.CollapsesTo(0), 1u);  // that is all
+}
+
 TEST(CollapseHistory, KnowsTheFacesOfEveryTime) {
   const CollapseHistory history = AfterOneCollapse(4);
   EXPECT_EQ(history.num_collapses(), 1u);
