@@ -38,6 +38,14 @@ struct Trial {
   SurfaceErrors errors;  // if measured and nothing else was against it
 };
 
+// Of an attribute that errs by far more than forecast.
+struct Unforeseen {
+  double measured = 0.0;     // over its target
+  bool is_position = false;  // what was made finer for it: positions, or the attribute
+  int least_attribute = 1;   // before that
+  int times = 0;             // that it was so before
+};
+
 // Measured over forecast, squared; of what is not yet measured 1.
 struct Correction {
   double distance = 1.0;
@@ -70,6 +78,7 @@ class FamilyRounder {
         indices_(attributes_.size()) {
     correction_.attributes.assign(attributes_.size(), 1.0);
     least_attributes_.assign(attributes_.size(), 1);
+    unforeseen_.assign(attributes_.size(), std::nullopt);
     for (const RoundedAttribute& attribute : attributes_) num_numbers_.push_back(attribute.num_numbers);
     if (!meter.status().ok()) return;
     targets_ = meter.TargetsWith(everywhere);
@@ -307,7 +316,7 @@ class FamilyRounder {
     const Levels& levels = trial->levels;
     trial->met = errors.ok() && WorstRatio(errors.value(), targets_) <= 1.0;
     // A group has lost its area, or too much has turned: no forecast tells how much finer that has to be.
-    if (!errors.ok() || errors.value().MostTurned() > targets_.turned) least_positions_ = levels.positions + 1;
+    if (!errors.ok() || errors.value().MostTurned() > targets_.turned) least_positions_ = levels.positions + ++num_turned_;
     if (!errors.ok()) return;
     trial->errors = errors.value();
     Report(errors.value(), &trial->family);
@@ -375,7 +384,7 @@ class FamilyRounder {
       return std::max(Square(measured) - Square(own), kLeast * Square(expected)) / std::max(Square(expected), kTiny);
     };
     // Where the forecast is far off, a factor is of no use: it may be one of next to nothing. But errors are in proportion to the step.
-    constexpr double kUnforeseen = 3, kNothing = 0.05;
+    constexpr double kUnforeseen = 3;
     const double distance = errors.distance / targets_.distance, expected_distance = positions.distance / targets_.distance;
     if (distance > std::max(1.0, kUnforeseen * expected_distance)) {  // flat surfaces shrink within their plane
       least_positions_ = std::max(least_positions_, levels.positions + LevelsFiner(distance));
@@ -394,11 +403,29 @@ class FamilyRounder {
       const double rounded = forecast_.Rounded(a, levels.attributes[a]) / attributes_[a].target;
       const double expected = std::hypot(rounded, positions.slides[a] / attributes_[a].target);
       const double measured = Ratio(errors, *indices_[a]);
-      // What finer rounding does not mend in one go is due to the positions.
-      const bool is_first = least_attributes_[a] == 1 && measured > kUnforeseen * expected;
-      if (measured > std::max(1.0, kUnforeseen * rounded)) least_attributes_[a] = levels.attributes[a] + LevelsFiner(measured);
-      if (measured > 1.0 && (is_first || expected < kNothing)) continue;
+      if (measured > std::max(1.0, kUnforeseen * expected)) {
+        Blame(a, measured, levels);
+        continue;
+      }
       correction_.attributes[a] = corrected(measured, own_attributes_[a], expected);
+    }
+  }
+
+  // An attribute errs by far more than forecast, for one of two reasons. Its values are off by more where the forecast has left out what errs; or they
+  // lie on the other side of an edge, over an area that shrinks with the step of the positions. What was made finer for it and has not mended it was not the reason.
+  void Blame(size_t a, double measured, const Levels& levels) {
+    constexpr double kMended = 0.8;
+    std::optional<Unforeseen>& last = unforeseen_[a];
+    const double most = forecast_.MostRounded(a, levels.attributes[a]) / attributes_[a].target;
+    const bool is_mended = last.has_value() && measured < kMended * last->measured;
+    const bool is_position = measured > most || (last.has_value() && last->is_position == is_mended);
+    if (is_position && last.has_value() && !last->is_position) least_attributes_[a] = last->least_attribute;
+    const int times = last.has_value() ? last->times + 1 : 0;
+    last = Unforeseen{measured, is_position, least_attributes_[a], times};
+    if (is_position) {
+      least_positions_ = std::max(least_positions_, levels.positions + std::max(LevelsFiner(std::sqrt(measured)), 1 << std::min(times, 5)));
+    } else {
+      least_attributes_[a] = levels.attributes[a] + std::max(LevelsFiner(measured), 1 << std::min(times, 5));
     }
   }
 
@@ -417,7 +444,9 @@ class FamilyRounder {
   ErrorTargets targets_;
   double num_positions_ = 1.0;
   std::vector<double> num_numbers_;  // of each attribute
+  std::vector<std::optional<Unforeseen>> unforeseen_;  // of each attribute, the last
   int least_positions_ = 1;
+  int num_turned_ = 0;  // how often positions were too coarse for that
   std::vector<int> least_attributes_;  // levels
   Correction correction_;
   std::map<Levels, Trial> trials_;

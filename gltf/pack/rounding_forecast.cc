@@ -140,13 +140,12 @@ double RoundingForecast::SlideOf(const RoundedAttribute& attribute, const std::v
       squares.emplace_back(MeanSquare(slide[0], slide[1], slide[2]), area);
     }
   }
-  return RmsOf(attribute, &squares);
+  return ErrorsOf(attribute, &squares).rms;
 }
 
-double RoundingForecast::Rounded(size_t index, int level) {
-  if (level > kMostLevel) return 0.0;
-  const auto known = rounded_.find({index, level});
-  if (known != rounded_.end()) return known->second;
+const RoundingForecast::Errors& RoundingForecast::ErrorsOf(size_t index, int level) {
+  const auto [known, is_new] = rounded_.emplace(std::make_pair(index, level), Errors());
+  if (!is_new || level > kMostLevel) return known->second;
   const RoundedAttribute& attribute = attributes_[index];
   std::vector<std::pair<double, double>> squares;
   for (const RoundedAttribute::Part& part : attribute.parts) {
@@ -163,28 +162,30 @@ double RoundingForecast::Rounded(size_t index, int level) {
       squares.emplace_back(MeanSquare(errors[t[0]], errors[t[1]], errors[t[2]]), area);
     }
   }
-  return rounded_.emplace(std::make_pair(index, level), RmsOf(attribute, &squares)).first->second;
+  return known->second = ErrorsOf(attribute, &squares);
 }
 
-double RoundingForecast::RmsOf(const RoundedAttribute& attribute, std::vector<std::pair<double, double>>* squares) const {
+RoundingForecast::Errors RoundingForecast::ErrorsOf(const RoundedAttribute& attribute, std::vector<std::pair<double, double>>* squares) {
   constexpr double kLeftOut = 0.01;
   double area_sum = 0.0;
   for (const auto& [square, area] : *squares) area_sum += area;
-  if (!(area_sum > 0.0)) return 0.0;
+  if (!(area_sum > 0.0)) return {};
   double kept = area_sum;
   if (!attribute.unit.empty()) {
     std::sort(squares->begin(), squares->end());
     kept *= 1.0 - kLeftOut;
   }
-  double sum = 0.0, covered = 0.0;
+  double sum = 0.0, covered = 0.0, most = 0.0;
   for (const auto& [square, area] : *squares) {
-    const double share = std::min(area, kept - covered);
-    if (!(share > 0.0)) break;
+    const double share = std::clamp(kept - covered, 0.0, area);
     sum += share * square;
     covered += share;
+    most = std::max(most, square);
   }
-  const double rms = std::sqrt(sum / kept);
-  return attribute.direction ? 2.0 * std::asin(std::min(rms / 2.0, 1.0)) * kDegreesPerRadian : rms * attribute.scale;
+  const auto shown = [&](double error) {
+    return attribute.direction ? 2.0 * std::asin(std::min(error / 2.0, 1.0)) * kDegreesPerRadian : error * attribute.scale;
+  };
+  return {shown(std::sqrt(sum / kept)), shown(std::sqrt(most))};
 }
 
 }  // namespace lacerta

@@ -31,13 +31,19 @@ class RoundingForecast {
 
   // RMS of an attribute rounded at a level, in the unit of its target, over the 99 % of the surface where it is least;
   // of other than texture coordinates and directions over all of it. 0 beyond kMostLevel.
-  double Rounded(size_t attribute, int level);
+  double Rounded(size_t attribute, int level) { return ErrorsOf(attribute, level).rms; }
+  // The same of the triangle where it is most.
+  double MostRounded(size_t attribute, int level) { return ErrorsOf(attribute, level).most; }
 
   // The level at which a step moves positions by about `error`.
   int StartLevel(double error) const;
 
  private:
-  double RmsOf(const RoundedAttribute& attribute, std::vector<std::pair<double, double>>* squares) const;
+  struct Errors {
+    double rms = 0.0, most = 0.0;
+  };
+  const Errors& ErrorsOf(size_t attribute, int level);
+  static Errors ErrorsOf(const RoundedAttribute& attribute, std::vector<std::pair<double, double>>* squares);
   double SlideOf(const RoundedAttribute& attribute, const std::vector<std::vector<Vec3f>>& moved) const;
 
   const std::vector<const Primitive*>& primitives_;
@@ -46,7 +52,7 @@ class RoundingForecast {
   Lattice box_;
   bool has_area_ = false;
   std::map<int, RoundedPositions> positions_;
-  std::map<std::pair<size_t, int>, double> rounded_;
+  std::map<std::pair<size_t, int>, Errors> rounded_;
 };
 
 }  // namespace lacerta

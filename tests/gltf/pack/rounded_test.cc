@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "decoder/smooth_normals.h"
 #include "gltf/test_assets.h"
@@ -60,6 +62,66 @@ TEST(Rounded, PositionsThatSlideUnderTheTextureGetMoreBits) {
       EXPECT_GT(seen.attributes[1].rms, 0.1 * AttributeTargets().uv_texels);  // not just any bits
     }
     bits_before = bits;
+  }
+}
+
+// A knob of six sides whose rings have narrow grooves, with hard edges along all rings and normals that are smooth around it.
+Primitive GroovedKnob(float width, uint32_t num_grooves) {
+  constexpr uint32_t kSides = 6;
+  std::vector<std::array<float, 2>> rings = {{0.02f, 0}};  // radius, height
+  for (uint32_t g = 0; g <= num_grooves; ++g) {
+    const float radius = 1 + std::sin(3.0f * static_cast<float>(g) / static_cast<float>(num_grooves)), height = 10.0f * static_cast<float>(g) / static_cast<float>(num_grooves);
+    rings.insert(rings.end(), {{radius, height}, {radius - width, height + width / 2}, {radius, height + width}});
+  }
+  rings.push_back({0.02f, 11});
+  Primitive primitive;
+  std::vector<Vec3f> positions, normals;
+  for (size_t r = 0; r + 1 < rings.size(); ++r) {
+    const float out = rings[r + 1][0] - rings[r][0], up = rings[r + 1][1] - rings[r][1], length = std::hypot(out, up);
+    const auto first = static_cast<uint32_t>(positions.size());
+    for (const auto& [radius, height] : {rings[r], rings[r + 1]}) {
+      for (uint32_t k = 0; k < kSides; ++k) {
+        const float angle = 6.2831853f * static_cast<float>(k) / kSides;
+        positions.push_back({radius * std::cos(angle), radius * std::sin(angle), height});
+        normals.push_back({up / length * std::cos(angle), up / length * std::sin(angle), -out / length});
+      }
+    }
+    for (uint32_t k = 0; k < kSides; ++k) {
+      const uint32_t a = first + k, b = first + (k + 1) % kSides;
+      primitive.triangles.insert(primitive.triangles.end(), {{a, b, a + kSides}, {b, b + kSides, a + kSides}});
+    }
+  }
+  primitive.num_vertices = positions.size();
+  primitive.attributes = {{"POSITION", MakeFloatAccessor(positions)}, {"NORMAL", MakeFloatAccessor(normals)}};
+  return primitive;
+}
+
+// Where positions may be far off, as those of small parts of large scenes, normals on the wrong sides of grooves want fine positions all the same, and not
+// finer normals. What is enough for a small distance is for a large one.
+TEST(Rounded, LargeDistancesTakeNoMoreBytes) {
+  const TexelScale scale = [](size_t, uint64_t set) { return Texels(set); };
+  for (const float width : {0.2f, 0.05f, 0.01f, 0.003f}) {
+    const Primitive primitive = GroovedKnob(width, 12);
+    const double diagonal = BoundingBoxDiagonal(Surface(primitive));
+    size_t bytes_before = 0;
+    for (const double share : {0.001, 0.01, 0.05, 0.2}) {
+      const FamilyMeter meter({&primitive}, share * diagonal, {}, 1024, scale);
+      const auto rounded = RoundFamily(meter.primitives(), meter);
+      ASSERT_TRUE(rounded.ok()) << rounded.status().message();
+      const RoundedFamily& family = rounded.value();
+      const SurfaceErrors seen = Seen(primitive, family.members[0].decoded, scale);
+      EXPECT_LE(seen.distance, 1.02 * share * diagonal);
+      EXPECT_LE(seen.attributes[0].rms_99, 1.02 * AttributeTargets().normal_degrees);
+      EXPECT_LE(seen.turned, 6e-4);
+      const size_t bytes = family.members[0].bytes.size();
+      if (bytes_before != 0) {
+        EXPECT_LE(static_cast<double>(bytes), 1.05 * static_cast<double>(bytes_before)) << width << ' ' << share;
+      }
+      bytes_before = bytes;
+    }
+    if (width < 0.004f) {
+      EXPECT_LE(bytes_before, 500u);  // grooves so narrow may be closed
+    }
   }
 }
 
