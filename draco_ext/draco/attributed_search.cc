@@ -1,13 +1,14 @@
 #include "draco/attributed_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 
+#include "draco/for_each_candidate.h"
 #include "draco/rate_control.h"
 #include "remesh/agreeing_faces.h"
 #include "remesh/attributed_still.h"
@@ -29,64 +30,86 @@ SearchTries TriesOf(Effort effort) {
   return {1.6, 6, 3};
 }
 
-enum class Found { kSmaller, kTooLarge, kTooFar };
-
 // A ladder of base sizes, from the coarsest that seams allow.
 class BaseWalk {
  public:
   BaseWalk(const AttributedSurface& input, const ErrorTargets& targets, const AttributedSearchOptions& options)
       : input_(input), targets_(targets), options_(options), tries_(TriesOf(options.effort)) {
-    const double num_vertices = static_cast<double>(input.parts.refined.surface.positions.size());
-    coarsest_ = std::max(num_vertices - static_cast<double>(input.history.num_collapses()), 4.0);
+    coarsest_ = std::max(NumVertices() - static_cast<double>(input.history.num_collapses()), 4.0);
     constexpr double kLargestBase = 1.0 / 8;  // of the input's vertices
-    last_ = std::max(0, RungOf(kLargestBase * num_vertices));
+    last_ = std::max(0, RungOf(kLargestBase * NumVertices()));
   }
 
-  StatusOr<AttributedTrial> Smallest() {
-    int first = std::clamp(RungOf(TypicalBase(Psnr(targets_.distance, input_.meter.diagonal()))), 0, last_);
-    while (Visit(first) == Found::kTooFar && first < last_ && may_get_nearer_) ++first;
-    const bool is_near = best_ || least_bytes_ < kHopeless * static_cast<double>(options_.most_bytes);
-    if (is_near) {
-      for (int r = first + 1; r <= last_ && Visit(r) == Found::kSmaller; ++r) {
-      }
-      for (int r = first - 1; r >= 0 && visited_.count(r) == 0 && Visit(r) == Found::kSmaller; --r) {
-      }
+  // Downhill on either side of where streams of that quality usually have their base, or of the next size that leads to the targets.
+  StatusOr<AttributedTrial> Smallest() const {
+    const int usual = std::clamp(RungOf(TypicalBase(Psnr(targets_.distance, input_.meter.diagonal()))), 0, last_);
+    int first = usual;
+    Visited start = Visit(first, options_.most_bytes);
+    while (start.is_too_far && start.may_get_nearer && first < last_) start = Visit(++first, options_.most_bytes);
+    constexpr double kHopeless = 1.2;  // times too large: neighboring bases do not save so much
+    if (!start.trial && !(start.least_bytes < kHopeless * static_cast<double>(options_.most_bytes))) return start.reason;
+    const size_t most_bytes = start.trial ? start.trial->stream.size() : options_.most_bytes;
+    std::array<Visited, 2> sides;
+    const size_t num_sides = first == usual ? 2 : 1;  // smaller bases are known to be too far else
+    ForEachCandidate(NumVertices(), num_sides, [&](size_t side) { sides[side] = Downhill(first, side == 0 ? 1 : -1, most_bytes); });
+    Visited* best = &start;
+    for (Visited& side : sides) {
+      if (side.trial && (!best->trial || side.trial->stream.size() < best->trial->stream.size())) best = &side;
     }
-    if (!best_) return reason_;
-    return std::move(*best_);
+    if (!best->trial) return start.reason;
+    return std::move(*best->trial);
   }
 
  private:
-  static constexpr double kHopeless = 1.2;  // times too large: neighboring bases do not save so much
+  struct Visited {
+    std::optional<AttributedTrial> trial;  // of fewer bytes than was asked for, where the targets are met
+    Status reason;                         // else
+    bool is_too_far = false, may_get_nearer = true;  // with larger bases
+    double least_bytes = std::numeric_limits<double>::infinity();  // of a stream that was too large
+  };
+
+  double NumVertices() const { return static_cast<double>(input_.parts.refined.surface.positions.size()); }
 
   int RungOf(double size) const { return static_cast<int>(std::lround(std::log(std::max(size, 1.0) / coarsest_) / std::log(tries_.size_ratio))); }
 
-  // Whether the smallest stream so far has the base of this rung.
-  Found Visit(int rung) {
-    visited_.insert(rung);
-    StatusOr<AttributedTrial> trial = Meet(static_cast<uint32_t>(std::lround(coarsest_ * std::pow(tries_.size_ratio, rung))));
-    if (!trial.ok()) {
-      reason_ = trial.status();
-      return Found::kTooFar;
+  uint32_t RungSize(int rung) const { return static_cast<uint32_t>(std::lround(coarsest_ * std::pow(tries_.size_ratio, rung))); }
+
+  // The smallest of the rungs on that side of `first`, up to the first that is not smaller than all before.
+  Visited Downhill(int first, int side, size_t most_bytes) const {
+    Visited best;
+    for (int rung = first + side; rung >= 0 && rung <= last_; rung += side) {
+      Visited next = Visit(rung, most_bytes);
+      if (!next.trial) break;
+      most_bytes = next.trial->stream.size();
+      best = std::move(next);
     }
-    const double bytes = std::max(trial.value().least_bytes, trial.value().ratio <= 1 ? static_cast<double>(trial.value().stream.size()) : 0.0);
-    if (bytes >= static_cast<double>(MostBytes())) {
-      least_bytes_ = std::min(least_bytes_, bytes);
-      reason_ = Unsupported("about " + std::to_string(std::lround(bytes)) + " bytes would be needed");
-      return Found::kTooLarge;
-    }
-    if (trial.value().ratio > 1) {
-      reason_ = Unsupported("no precision leads to the targets");
-      return Found::kTooFar;
-    }
-    best_ = std::move(trial).value();
-    return Found::kSmaller;
+    return best;
   }
 
-  size_t MostBytes() const { return best_ ? std::min(options_.most_bytes, best_->stream.size()) : options_.most_bytes; }
+  // A stream of fewer than `most_bytes` bytes with the base of that rung.
+  Visited Visit(int rung, size_t most_bytes) const {
+    Visited result;
+    StatusOr<AttributedTrial> trial = Meet(RungSize(rung), most_bytes, &result.may_get_nearer);
+    if (!trial.ok()) {
+      result.reason = trial.status();
+      result.is_too_far = true;
+      return result;
+    }
+    const double bytes = std::max(trial.value().least_bytes, trial.value().ratio <= 1 ? static_cast<double>(trial.value().stream.size()) : 0.0);
+    if (bytes >= static_cast<double>(most_bytes)) {
+      result.least_bytes = bytes;
+      result.reason = Unsupported("about " + std::to_string(std::lround(bytes)) + " bytes would be needed");
+    } else if (trial.value().ratio > 1) {
+      result.reason = Unsupported("no precision leads to the targets");
+      result.is_too_far = true;
+    } else {
+      result.trial = std::move(trial).value();
+    }
+    return result;
+  }
 
   // The smallest stream with a base of that size, and as few levels as lead to the targets.
-  StatusOr<AttributedTrial> Meet(uint32_t num_base_vertices) {
+  StatusOr<AttributedTrial> Meet(uint32_t num_base_vertices, size_t most_bytes, bool* may_get_nearer) const {
     const double num_faces = static_cast<double>(input_.parts.refined.surface.triangles.size());
     // Of the finest level, as multiples of the input's; small inputs may need rounder surfaces, large ones would fill the memory for nothing.
     constexpr double kFewestFaces = 0.4, kLeastMost = 2, kMostFaces = 8, kMany = 2e6;
@@ -105,7 +128,7 @@ class BaseWalk {
         meet.first_tries = tries_.first;
         meet.finer_tries = tries_.finer;
         meet.num_samples = options_.num_samples;
-        meet.most_bytes = MostBytes();
+        meet.most_bytes = most_bytes;
         return candidate.Meet(targets_, meet);
       }
       constexpr double kStuck = 0.9;  // of the error before: more levels do not help
@@ -113,7 +136,7 @@ class BaseWalk {
     }
     // Larger bases change what vertices stand for, but not by orders of magnitude.
     constexpr double kFar = 3;
-    may_get_nearer_ = WorstRatio(*nearest, targets_) < kFar;
+    *may_get_nearer = WorstRatio(*nearest, targets_) < kFar;
     return Unsupported(WhatIsFar(*nearest));
   }
 
@@ -139,11 +162,6 @@ class BaseWalk {
   const SearchTries tries_;
   double coarsest_;
   int last_;
-  std::set<int> visited_;
-  Status reason_;  // why the last rung gave nothing
-  bool may_get_nearer_ = true;  // where the last rung was too far
-  double least_bytes_ = std::numeric_limits<double>::infinity();  // of streams that were too large
-  std::optional<AttributedTrial> best_;
 };
 
 // Stock Draco takes more for a triangle at any precision worth naming: its corners' integers, half a vertex each, and the connectivity.

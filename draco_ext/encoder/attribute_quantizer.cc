@@ -10,6 +10,7 @@
 #include "common/coefficient_sets.h"
 #include "encoder/bit_cost.h"
 #include "encoder/quantizer.h"
+#include "geometry/for_each_branch.h"
 #include "geometry/value_difference.h"
 
 namespace lacerta {
@@ -192,45 +193,61 @@ double AttributeBits(const AttributeTarget& target, const CodedAttribute& coded)
   return meter.bits();
 }
 
-CodedAttribute EncodeAttribute(const AttributeTarget& target, double largest_error, Span<const Topology> topologies, Span<const Vec3f> positions) {
-  const bool is_normal = target.precision.kind == AttributeKind::kNormal;
-  const bool is_direction = is_normal || target.precision.kind == AttributeKind::kTangent;
+namespace {
+
+// What one way of prediction leads to.
+struct PredictedAttribute {
+  CodedAttribute best;    // the fewest bits that keep the error
+  CodedAttribute finest;  // the least error of all that was tried
+  double bits = std::numeric_limits<double>::infinity(), least_error = std::numeric_limits<double>::infinity();
+};
+
+PredictedAttribute EncodePredicted(const AttributeTarget& target, AttributePrediction prediction, double largest_error, Span<const Topology> topologies,
+                                   Span<const Vec3f> positions) {
+  const bool is_direction = target.precision.kind == AttributeKind::kNormal || target.precision.kind == AttributeKind::kTangent;
   const double unit = is_direction ? largest_error / kDegreesPerRadian : largest_error;
-  std::vector<AttributePrediction> predictions = {AttributePrediction::kButterfly, AttributePrediction::kLinear};
-  if (is_normal) predictions.push_back(AttributePrediction::kGeometry);
-  CodedAttribute best, finest;
-  double fewest = std::numeric_limits<double>::infinity(), least_error = fewest;
-  for (const AttributePrediction prediction : predictions) {
-    for (int count = 0; count <= static_cast<int>(topologies.size()); ++count) {
-      // The step is largest at 8 times the error asked for, and comes down until that is met.
-      constexpr int kSteps = 64;
-      int coarse = -1, fine = count == 0 ? 0 : kSteps;  // the error is met at `fine`, or nowhere
-      CodedAttribute met;
-      const auto attempt = [&](int i) {
-        const double step = 8 * unit * std::pow(2.0, -i / 8.0);
-        CodedAttribute coded =
-            QuantizeAttribute(target, {target.precision, prediction, StepsOf(static_cast<float>(step), count, topologies.size())}, topologies, positions);
-        const double error = AttributeRmsError(target, coded.decoded);
-        if (error < least_error) {
-          least_error = error;
-          finest = coded;
-        }
-        const bool is_met = error <= largest_error;
-        if (is_met) met = std::move(coded);
-        return is_met;
-      };
-      if (!attempt(fine)) continue;
-      while (fine - coarse > 1 && count > 0) {
-        const int middle = (coarse + fine) / 2;
-        (attempt(middle) ? fine : coarse) = middle;
+  PredictedAttribute result;
+  for (int count = 0; count <= static_cast<int>(topologies.size()); ++count) {
+    // The step is largest at 8 times the error asked for, and comes down until that is met.
+    constexpr int kSteps = 64;
+    int coarse = -1, fine = count == 0 ? 0 : kSteps;  // the error is met at `fine`, or nowhere
+    CodedAttribute met;
+    const auto attempt = [&](int i) {
+      const double step = 8 * unit * std::pow(2.0, -i / 8.0);
+      CodedAttribute coded =
+          QuantizeAttribute(target, {target.precision, prediction, StepsOf(static_cast<float>(step), count, topologies.size())}, topologies, positions);
+      const double error = AttributeRmsError(target, coded.decoded);
+      if (error < result.least_error) {
+        result.least_error = error;
+        result.finest = coded;
       }
-      const double bits = AttributeBits(target, met);
-      if (bits >= fewest) continue;
-      fewest = bits;
-      best = std::move(met);
+      const bool is_met = error <= largest_error;
+      if (is_met) met = std::move(coded);
+      return is_met;
+    };
+    if (!attempt(fine)) continue;
+    while (fine - coarse > 1 && count > 0) {
+      const int middle = (coarse + fine) / 2;
+      (attempt(middle) ? fine : coarse) = middle;
     }
+    const double bits = AttributeBits(target, met);
+    if (bits >= result.bits) continue;
+    result.bits = bits;
+    result.best = std::move(met);
   }
-  return std::isfinite(fewest) ? best : finest;
+  return result;
+}
+
+}  // namespace
+
+CodedAttribute EncodeAttribute(const AttributeTarget& target, double largest_error, Span<const Topology> topologies, Span<const Vec3f> positions) {
+  std::vector<AttributePrediction> predictions = {AttributePrediction::kButterfly, AttributePrediction::kLinear};
+  if (target.precision.kind == AttributeKind::kNormal) predictions.push_back(AttributePrediction::kGeometry);
+  std::vector<PredictedAttribute> found(predictions.size());
+  ForEachBranch(predictions.size(), [&](size_t p) { found[p] = EncodePredicted(target, predictions[p], largest_error, topologies, positions); });
+  const auto fewest = std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.bits < b.bits; });
+  if (std::isfinite(fewest->bits)) return std::move(fewest->best);
+  return std::move(std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.least_error < b.least_error; })->finest);
 }
 
 }  // namespace lacerta
