@@ -22,7 +22,7 @@ namespace lacerta {
 // none.
 using ErrorCorrection = std::function<Status(const AttributedMesh&, uint64_t num_samples, SurfaceErrors*)>;
 
-// What values are for, where they do not say it themselves.
+// What values are for, where they do not say it themselves. May be asked from several threads at a time.
 struct AttributeMeaning {
   JointTable joints = {};  // all three as in AttributedStreamOptions
   ErrorFactors factors = {};
