@@ -415,6 +415,7 @@ class FamilyRounder {
   // lie on the other side of an edge, over an area that shrinks with the step of the positions. What was made finer for it and has not mended it was not the reason.
   void Blame(size_t a, double measured, const Levels& levels) {
     constexpr double kMended = 0.8;
+    constexpr int kMostDoublings = 5;
     std::optional<Unforeseen>& last = unforeseen_[a];
     const double most = forecast_.MostRounded(a, levels.attributes[a]) / attributes_[a].target;
     const bool is_mended = last.has_value() && measured < kMended * last->measured;
@@ -422,10 +423,11 @@ class FamilyRounder {
     if (is_position && last.has_value() && !last->is_position) least_attributes_[a] = last->least_attribute;
     const int times = last.has_value() ? last->times + 1 : 0;
     last = Unforeseen{measured, is_position, least_attributes_[a], times};
+    const int finer = std::max(LevelsFiner(is_position ? std::sqrt(measured) : measured), 1 << std::min(times, kMostDoublings));
     if (is_position) {
-      least_positions_ = std::max(least_positions_, levels.positions + std::max(LevelsFiner(std::sqrt(measured)), 1 << std::min(times, 5)));
+      least_positions_ = std::max(least_positions_, levels.positions + finer);
     } else {
-      least_attributes_[a] = levels.attributes[a] + std::max(LevelsFiner(measured), 1 << std::min(times, 5));
+      least_attributes_[a] = levels.attributes[a] + finer;
     }
   }
 
