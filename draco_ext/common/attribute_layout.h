@@ -25,7 +25,13 @@ struct AttributeHeader {
   AttributeLattice precision;
   AttributePrediction prediction = AttributePrediction::kButterfly;
   std::vector<float> steps;  // L, as RoundStep returns them; 0: the level has no residuals
+  bool is_chained = false;   // of colors: residuals of green are stored less those of red, of blue less those of green
 };
+
+inline constexpr uint8_t kChainedFlag = 4;  // beside the prediction
+
+// Whether residual `c` of a value is stored less the one before it.
+inline bool IsChained(const AttributeHeader& header, uint32_t c) { return header.is_chained && (c == 1 || c == 2); }
 
 // Residuals that are coded for each value: normals move in their tangent plane, the sign of a tangent stays.
 inline uint32_t CodedComponents(const AttributeLattice& p) {
@@ -39,6 +45,9 @@ inline bool HasLegalComponents(const AttributeLattice& p) {
   if (p.kind == AttributeKind::kTangent) return p.components == 3 || p.components == 4;
   return p.components >= 1;
 }
+
+// Whether residuals may be chained.
+inline bool HasChain(const AttributeLattice& p) { return p.kind == AttributeKind::kColor && p.components >= 3; }
 
 }  // namespace lacerta
 

@@ -76,10 +76,11 @@ void AddResiduals(const AttributeHeader& header, const AttributeWedges& wedges, 
   const Topology& t = wedges.topology;
   const uint32_t n = header.precision.components, coded = CodedComponents(header.precision);
   for (uint32_t e = 0; e < t.num_edges(); ++e) {
-    const auto residual = [&](uint32_t c) { return static_cast<float>(residuals[size_t{c} * t.num_edges() + e]) * step; };
+    const auto stored = [&](uint32_t c) { return residuals[size_t{c} * t.num_edges() + e]; };
+    const auto residual = [&](uint32_t c) { return static_cast<float>(stored(c)) * step; };
     float* const row = values->data() + (size_t{t.num_vertices} + e) * n;
     bool moves = false;
-    for (uint32_t c = 0; c < coded; ++c) moves = moves || residuals[size_t{c} * t.num_edges() + e] != 0;
+    for (uint32_t c = 0; c < coded; ++c) moves = moves || stored(c) != 0;
     if (!moves) continue;
     if (header.precision.kind == AttributeKind::kNormal) {
       const Vec3f normal = VectorAt(row);
@@ -88,7 +89,11 @@ void AddResiduals(const AttributeHeader& header, const AttributeWedges& wedges, 
       continue;
     }
     const Vec3f before = header.precision.kind == AttributeKind::kTangent ? VectorAt(row) : Vec3f{};
-    for (uint32_t c = 0; c < coded; ++c) row[c] += residual(c);
+    int32_t whole = 0;
+    for (uint32_t c = 0; c < coded; ++c) {
+      whole = stored(c) + (IsChained(header, c) ? whole : 0);
+      row[c] += static_cast<float>(whole) * step;
+    }
     if (header.precision.kind == AttributeKind::kTangent) SetVector(UnitOr(VectorAt(row), before), row);
   }
 }

@@ -59,7 +59,7 @@ Status ReadAttributes(size_t num_levels, ByteCursor* cursor, std::vector<Attribu
   uint64_t num_components = 0;
   for (uint32_t i = 0; i < count && !cursor->at_end(); ++i) {
     AttributeHeader a;
-    const uint8_t kind = cursor->Byte(), prediction = cursor->Byte();
+    const uint8_t kind = cursor->Byte(), flags = cursor->Byte(), prediction = flags & ~kChainedFlag;
     a.precision.components = cursor->Varint();
     num_components += a.precision.components;
     const Span<const uint8_t> name = cursor->Take(cursor->Byte());
@@ -69,7 +69,8 @@ Status ReadAttributes(size_t num_levels, ByteCursor* cursor, std::vector<Attribu
     const bool is_normal = a.precision.kind == AttributeKind::kNormal;
     if (!HasLegalComponents(a.precision) || num_components > kMostComponents)
       return InvalidData("an attribute in the refinement header has a number of components that is not legal");
-    if (prediction > static_cast<uint8_t>(AttributePrediction::kGeometry) ||
+    a.is_chained = (flags & kChainedFlag) != 0;
+    if ((a.is_chained && !HasChain(a.precision)) || prediction > static_cast<uint8_t>(AttributePrediction::kGeometry) ||
         (!is_normal && prediction == static_cast<uint8_t>(AttributePrediction::kGeometry)))
       return InvalidData("an attribute in the refinement header has an unknown prediction");
     a.prediction = static_cast<AttributePrediction>(prediction);

@@ -146,12 +146,15 @@ CodedAttribute QuantizeAttribute(const AttributeTarget& target, const AttributeH
       for (size_t c = 0; c < difference.size(); ++c) differences[c * num_edges + e] = difference[c] / step;
     }
     const bool continues = i + 1 < header.steps.size() && header.steps[i + 1] > 0;
+    std::vector<int32_t> before(num_edges, 0);  // of the component before, whole
     CodeAttributeLevel(
         wedges.topology, step, continues, &state, &coded.residuals[i], &meter,
         [&](uint32_t c, uint32_t e, SetModels& models, const CoefficientContext& context, int32_t* value) {
           const size_t row = size_t{wedges.topology.num_vertices} + e;
           const float factor = target.factors.empty() ? 1.0f : target.factors[row * header.precision.components + c];
-          *value = ChooseResidual(differences[c * num_edges + e], factor, models, context);
+          const int32_t known = IsChained(header, c) ? before[e] : 0;
+          *value = ChooseResidual(differences[c * num_edges + e] - static_cast<float>(known), factor, models, context);
+          before[e] = known + *value;
         });
     AddResiduals(header, wedges, surface, step, coded.residuals[i], &coded.decoded);
   }
@@ -202,7 +205,8 @@ struct PredictedAttribute {
   double bits = std::numeric_limits<double>::infinity(), least_error = std::numeric_limits<double>::infinity();
 };
 
-PredictedAttribute EncodePredicted(const AttributeTarget& target, AttributePrediction prediction, double largest_error, Span<const Topology> topologies,
+// header: all but the steps.
+PredictedAttribute EncodePredicted(const AttributeTarget& target, AttributeHeader header, double largest_error, Span<const Topology> topologies,
                                    Span<const Vec3f> positions) {
   const bool is_direction = target.precision.kind == AttributeKind::kNormal || target.precision.kind == AttributeKind::kTangent;
   const double unit = is_direction ? largest_error / kDegreesPerRadian : largest_error;
@@ -214,8 +218,8 @@ PredictedAttribute EncodePredicted(const AttributeTarget& target, AttributePredi
     CodedAttribute met;
     const auto attempt = [&](int i) {
       const double step = 8 * unit * std::pow(2.0, -i / 8.0);
-      CodedAttribute coded =
-          QuantizeAttribute(target, {target.precision, prediction, StepsOf(static_cast<float>(step), count, topologies.size())}, topologies, positions);
+      header.steps = StepsOf(static_cast<float>(step), count, topologies.size());
+      CodedAttribute coded = QuantizeAttribute(target, header, topologies, positions);
       const double error = AttributeRmsError(target, coded.decoded);
       if (error < result.least_error) {
         result.least_error = error;
@@ -241,10 +245,16 @@ PredictedAttribute EncodePredicted(const AttributeTarget& target, AttributePredi
 }  // namespace
 
 CodedAttribute EncodeAttribute(const AttributeTarget& target, double largest_error, Span<const Topology> topologies, Span<const Vec3f> positions) {
-  std::vector<AttributePrediction> predictions = {AttributePrediction::kButterfly, AttributePrediction::kLinear};
-  if (target.precision.kind == AttributeKind::kNormal) predictions.push_back(AttributePrediction::kGeometry);
-  std::vector<PredictedAttribute> found(predictions.size());
-  ForEachBranch(predictions.size(), [&](size_t p) { found[p] = EncodePredicted(target, predictions[p], largest_error, topologies, positions); });
+  std::vector<AttributeHeader> headers;
+  const auto consider = [&](AttributePrediction prediction, bool is_chained) { headers.push_back({target.precision, prediction, {}, is_chained}); };
+  for (const bool is_chained : {false, true}) {
+    if (is_chained && !HasChain(target.precision)) break;
+    consider(AttributePrediction::kButterfly, is_chained);
+    consider(AttributePrediction::kLinear, is_chained);
+  }
+  if (target.precision.kind == AttributeKind::kNormal) consider(AttributePrediction::kGeometry, false);
+  std::vector<PredictedAttribute> found(headers.size());
+  ForEachBranch(headers.size(), [&](size_t i) { found[i] = EncodePredicted(target, headers[i], largest_error, topologies, positions); });
   const auto fewest = std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.bits < b.bits; });
   if (std::isfinite(fewest->bits)) return std::move(fewest->best);
   return std::move(std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.least_error < b.least_error; })->finest);

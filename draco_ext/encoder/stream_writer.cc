@@ -74,9 +74,9 @@ int NumCurved(const std::vector<LevelSteps>& steps) {
 void PutAttributes(const std::vector<CodedAttribute>& attributes, Bytes* bytes) {
   PutVarint(attributes.size(), bytes);
   for (const CodedAttribute& attribute : attributes) {
-    const auto& [precision, prediction, steps] = attribute.header;
+    const auto& [precision, prediction, steps, is_chained] = attribute.header;
     bytes->push_back(static_cast<uint8_t>(precision.kind));
-    bytes->push_back(static_cast<uint8_t>(prediction));
+    bytes->push_back(static_cast<uint8_t>(static_cast<uint8_t>(prediction) | (is_chained ? kChainedFlag : 0)));
     PutVarint(precision.components, bytes);
     bytes->push_back(static_cast<uint8_t>(precision.name.size()));
     bytes->insert(bytes->end(), precision.name.begin(), precision.name.end());
@@ -155,10 +155,11 @@ Status CheckSet(const char* name, int level, const std::vector<int32_t>& set, si
 }
 
 Status CheckAttribute(const CodedAttribute& attribute, AttributeWedges wedges, size_t num_levels) {
-  const auto& [precision, prediction, steps] = attribute.header;
+  const auto& [precision, prediction, steps, is_chained] = attribute.header;
   const std::string where = "attribute " + precision.name;
   if (!HasLegalComponents(precision) || precision.name.size() > kMostNameBytes) return InvalidArgument(where + " has illegal components or too long a name");
   if (prediction == AttributePrediction::kGeometry && precision.kind != AttributeKind::kNormal) return InvalidArgument(where + " has no normals to take from the geometry");
+  if (is_chained && !HasChain(precision)) return InvalidArgument(where + " has no colors to chain");
   const bool is_normal = precision.kind == AttributeKind::kNormal;
   if (!is_normal && (!(precision.step > 0) || RoundStep(precision.step) != precision.step)) return InvalidArgument(where + ": the base step is not rounded");
   if (steps.size() != num_levels || attribute.residuals.size() != num_levels) return InvalidArgument(where + " has not the levels of the surface");

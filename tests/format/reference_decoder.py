@@ -5,6 +5,7 @@ reference_decoder.py GOLDEN.json...   decodes the .lac file beside each and comp
                                       in the .cbase file beside it and compares lattice and triangles.
 """
 import binascii
+import itertools
 import json
 import math
 import struct
@@ -96,9 +97,11 @@ def read_steps(reader, num_levels):
 def read_attributes(reader, num_levels):
     attributes = []
     for _ in range(reader.varint()):
-        kind, prediction, components = reader.unsigned(1), reader.unsigned(1), reader.varint()
+        kind, flags, components = reader.unsigned(1), reader.unsigned(1), reader.varint()
+        prediction, chained = flags & ~4, flags & 4 != 0
         name = reader.take(reader.unsigned(1)).decode()
         assert kind <= 5 and prediction <= 2 and (prediction < 2 or kind == 1) and components > 0
+        assert chained <= (kind == 3 and components >= 3)
         assert kind != 1 or components == 3
         assert kind != 2 or components in (3, 4)
         precision = reader.unsigned(1 if kind == 1 else 2)
@@ -110,7 +113,7 @@ def read_attributes(reader, num_levels):
                 step += reader.signed_varint()
                 assert 0x0080 <= step <= 0x7F7F
             steps.append(step if coded >> i & 1 else 0)
-        attributes.append({"kind": kind, "prediction": prediction, "components": components, "name": name, "precision": precision, "steps": steps})
+        attributes.append({"kind": kind, "prediction": prediction, "chained": chained, "components": components, "name": name, "precision": precision, "steps": steps})
     assert sum(a["components"] for a in attributes) <= 1024
     return attributes
 
@@ -1140,6 +1143,8 @@ class AttributeLevels:
             row = (unit(row[:3]) if any(row[:3]) else first[:3]) + first[3:]
         if not any(residuals):
             return row
+        if self.header["chained"]:
+            residuals = list(itertools.accumulate(residuals[:3])) + residuals[3:]
         moves = [q * step_value(bits) for q in residuals]
         if kind == 1:
             f = level.edges[e][2]

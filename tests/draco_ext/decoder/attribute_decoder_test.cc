@@ -42,5 +42,39 @@ TEST(AttributeDecoderTest, ALevelOnWhichAnAttributeFailsIsNoLevelOfTheOthers) {
   }
 }
 
+TEST(AttributeDecoderTest, ColorsAloneAreChained) {
+  const AttributedBase base = OctahedronWithAttributes();
+  const BaseMesh glued = GlueBase(base).value().mesh;
+  const Coefficients c = RandomCoefficients(glued, 2, 7);
+  const std::vector<Topology> topologies = BuildTopologies(glued, 2).value();
+  const auto write = [&](const WrittenAttributes& written) {
+    return WriteRefinement(glued, topologies, c.steps, c.levels, {}, BaseStepField::kWritten, &written);
+  };
+  const WrittenAttributes plain = RandomResiduals(base, 2, 8, 2.0), chained = RandomResiduals(base, 2, 8, 2.0, true);
+  const auto values_of = [&](const WrittenAttributes& written) {
+    ProgressiveDecoder decoder = ProgressiveDecoder::Create(base, {}).value();
+    EXPECT_TRUE(decoder.Append(write(written).value().bytes).ok());
+    EXPECT_EQ(decoder.level(), 2);
+    return decoder.attributes()[2].values;
+  };
+  // The same residuals: the first component is told as before, the others are sums of what is stored.
+  const std::vector<float> apart = values_of(plain), summed = values_of(chained);
+  ASSERT_EQ(apart.size(), summed.size());
+  bool differs = false;
+  for (size_t i = 0; i < apart.size(); ++i) {
+    if (i % 3 == 0) {
+      EXPECT_EQ(apart[i], summed[i]) << i;
+    }
+    differs = differs || apart[i] != summed[i];
+  }
+  EXPECT_TRUE(differs);
+
+  for (const size_t other : {0, 1, 3}) {
+    WrittenAttributes written = plain;
+    written.coded[other].header.is_chained = true;
+    EXPECT_THAT(write(written).status().message(), HasSubstr("has no colors to chain"));
+  }
+}
+
 }  // namespace
 }  // namespace lacerta

@@ -20,7 +20,15 @@ using ::lacerta::testing::OctahedronWithAttributes;
 
 constexpr int kNumLevels = 3;
 
-std::string PathOf(const char* extension) { return std::string(LACERTA_GOLDEN_DIR) + "/v1/octahedron_attributes" + extension; }
+struct Case {
+  const char* name;
+  bool is_chained;
+};
+
+class AttributedGoldenTest : public ::testing::TestWithParam<Case> {
+ protected:
+  static std::string PathOf(const char* extension) { return std::string(LACERTA_GOLDEN_DIR) + "/v1/" + GetParam().name + extension; }
+};
 
 template <typename Value>
 std::string List(const std::vector<Value>& values) {
@@ -68,8 +76,8 @@ std::string ReadFile(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST(AttributedGoldenTest, DecodesAndIsWrittenAgain) {
-  const AttributedTestStream stream = MakeAttributedTestStream(OctahedronWithAttributes(), kNumLevels, 41, 3.0);
+TEST_P(AttributedGoldenTest, DecodesAndIsWrittenAgain) {
+  const AttributedTestStream stream = MakeAttributedTestStream(OctahedronWithAttributes(), kNumLevels, 41, 3.0, GetParam().is_chained);
   const Bytes& written = stream.refinement.bytes;
   const auto decode = [&](const Bytes& bytes) {
     ProgressiveDecoder decoder = ProgressiveDecoder::Create(stream.base, {}).value();
@@ -88,6 +96,10 @@ TEST(AttributedGoldenTest, DecodesAndIsWrittenAgain) {
   EXPECT_EQ(stored, written) << "the writer of version 1 changed: streams in the field would not decode";
   EXPECT_EQ(decode(stored), ReadFile(PathOf(".json")));
 }
+
+INSTANTIATE_TEST_SUITE_P(Version1, AttributedGoldenTest,
+                         ::testing::Values(Case{"octahedron_attributes", false}, Case{"octahedron_attributes_chained", true}),
+                         [](const auto& at) { return std::string(at.param.name); });
 
 }  // namespace
 }  // namespace lacerta

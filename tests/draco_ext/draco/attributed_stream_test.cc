@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <utility>
 
 #include "draco/attributed_base_codec.h"
@@ -110,6 +111,35 @@ TEST(AttributedStreamTest, WhatCountsLessTakesFewerBytes) {
   EXPECT_LE(less.residual_bytes[0], 2 * coarse.residual_bytes[0] + 16);
   EXPECT_LE(less.errors[0], 1e-4);
   EXPECT_EQ(less.residual_bytes[1], all.residual_bytes[1]);
+}
+
+// Gray noise takes what one component takes, and little more; colors that have nothing to do with one another take thrice as much, and no more.
+TEST(AttributedStreamTest, ColorsThatChangeAlikeAreToldOnce) {
+  const auto bytes_of = [](AttributeKind kind, uint32_t components, bool is_gray) {
+    AttributedNormalMesh mesh = WavyCylinder(4);
+    LevelAttribute noise = mesh.attributes[0];
+    const size_t num_values = noise.num_values();
+    noise.name = "NOISE";
+    noise.kind = kind;
+    noise.components = components;
+    noise.values.clear();
+    std::mt19937 random(5);
+    for (size_t row = 0; row < num_values; ++row) {
+      float value = 0;
+      for (uint32_t c = 0; c < components; ++c) {
+        if (c == 0 || !is_gray) value = static_cast<float>(random() % 256) / 255;
+        noise.values.push_back(value);
+      }
+    }
+    mesh.attributes = {noise};
+    return EncodeAttributedStream(mesh, Options(1e-7, {0.02 * std::sqrt(components)})).value().residual_bytes[0];
+  };
+  const size_t one = bytes_of(AttributeKind::kGeneric, 1, true), gray = bytes_of(AttributeKind::kColor, 3, true), colorful = bytes_of(AttributeKind::kColor, 3, false);
+  EXPECT_GT(gray, one - one / 10);
+  EXPECT_LT(gray, one + one / 10);
+  EXPECT_LT(2 * gray, bytes_of(AttributeKind::kGeneric, 3, true));
+  EXPECT_GT(colorful, 3 * one - one / 3);
+  EXPECT_LT(colorful, 3 * one + one / 3);
 }
 
 TEST(AttributedStreamTest, SidesOfABoxStayAsTheyAre) {

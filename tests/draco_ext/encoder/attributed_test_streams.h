@@ -54,8 +54,8 @@ inline AttributedBase OctahedronWithAttributes() {
   return base;
 }
 
-// Steps and random residuals of the attributes of a base: level 2 has none of the first one.
-inline WrittenAttributes RandomResiduals(const AttributedBase& base, int num_levels, uint32_t seed, double scale) {
+// Steps and random residuals of the attributes of a base: level 2 has none of the first one. is_chained: of colors.
+inline WrittenAttributes RandomResiduals(const AttributedBase& base, int num_levels, uint32_t seed, double scale, bool is_chained = false) {
   std::mt19937 random(seed);
   const GluedBase glued = GlueBase(base).value();
   WrittenAttributes written{BaseChecksum(base), {}, {}};
@@ -67,6 +67,7 @@ inline WrittenAttributes RandomResiduals(const AttributedBase& base, int num_lev
     coded.header.prediction = coded.header.precision.kind == AttributeKind::kNormal  ? AttributePrediction::kGeometry
                               : coded.header.precision.kind == AttributeKind::kColor ? AttributePrediction::kLinear
                                                                                       : AttributePrediction::kButterfly;
+    coded.header.is_chained = is_chained && HasChain(coded.header.precision);
     for (int level = 0; level < num_levels; ++level) {
       if (level > 0) RefineWedges(&wedges);
       const bool is_silent = level == 1 && a == 0;
@@ -87,9 +88,9 @@ struct AttributedTestStream {
 };
 
 // Positions of level 3 are silent, its attributes are not.
-inline AttributedTestStream MakeAttributedTestStream(const AttributedBase& base, int num_levels, uint32_t seed, double scale) {
+inline AttributedTestStream MakeAttributedTestStream(const AttributedBase& base, int num_levels, uint32_t seed, double scale, bool is_chained = false) {
   const BaseMesh glued = GlueBase(base).value().mesh;
-  AttributedTestStream stream{base, RandomCoefficients(glued, num_levels, seed, scale), RandomResiduals(base, num_levels, seed + 1, scale), {}};
+  AttributedTestStream stream{base, RandomCoefficients(glued, num_levels, seed, scale), RandomResiduals(base, num_levels, seed + 1, scale, is_chained), {}};
   if (num_levels >= 3) Silence(3, &stream.positions);
   const std::vector<Topology> topologies = BuildTopologies(glued, num_levels).value();
   stream.refinement =
