@@ -92,6 +92,34 @@ double ScaleOf(const MeshAttribute& texture) {
   return std::strtod(texture.name.c_str() + texture.name.find('/') + 1, nullptr);
 }
 
+// How fast what is shown of a component changes with its linear light, IEC 61966-2-1.
+double SrgbSlope(double linear) {
+  constexpr double kDark = 0.0031308;
+  return linear <= kDark ? 12.92 : 1.055 / 2.4 * std::pow(std::min(linear, 1.0), 1 / 2.4 - 1);
+}
+
+// What colors may be off, as the length of a difference of linear light, for an error of each component as screens show them.
+double ColorTarget(const AttributedMesh& mesh, const MeshAttribute& color, double on_screen) {
+  double squares = 0.0, weight = 0.0;
+  for (size_t f = 0; f < color.corners.size(); ++f) {
+    if (color.corners[f][0] == MeshAttribute::kNoValue) continue;
+    const Triangle& t = mesh.surface.triangles[f];
+    const auto& p = mesh.surface.positions;
+    const double area = Norm(Vec3Cast<double>(Cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]])));
+    for (const uint32_t row : color.corners[f]) {
+      for (uint32_t c = 0; c < std::min(color.components, 3u); ++c) {
+        const double slope = SrgbSlope(static_cast<double>(color.values[size_t{row} * color.components + c]));
+        squares += area * slope * slope;
+        weight += area;
+      }
+    }
+  }
+  constexpr double kOfIntegers = 0.00113;  // those of 8 bits: 1 / (255 sqrt(12))
+  constexpr double kRoundedAgain = 2.0;    // components, and room for what was integers to become integers again
+  const double linear = weight > 0.0 && squares > 0.0 ? on_screen / std::sqrt(squares / weight) : on_screen;
+  return kRoundedAgain * std::max(linear, kOfIntegers);
+}
+
 }  // namespace
 
 std::string SoupName(const Attribute& attribute, size_t member, const TexelScale& scale) {
@@ -161,7 +189,7 @@ ErrorTargets FamilyTargets(const AttributedMesh& original, double error, const A
     if (attribute.kind == AttributeKind::kTextureCoordinates) {
       result.attributes.push_back(targets.uv_texels * static_cast<double>(texel_side) / ScaleOf(attribute));
     } else if (attribute.kind == AttributeKind::kColor) {
-      result.attributes.push_back(targets.color * 2.0);  // integers come back rounded
+      result.attributes.push_back(ColorTarget(original, attribute, targets.color));
     } else if (attribute.name == kPosesName) {
       bound_everywhere(error);
     } else if (IsTargetPosition(attribute.name)) {

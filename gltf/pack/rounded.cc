@@ -58,12 +58,14 @@ double Square(double x) { return x * x; }
 // How many levels finer a step is that is this many times smaller.
 int LevelsFiner(double factor) { return static_cast<int>(std::ceil(kLevelsPerBit * std::log2(factor))); }
 
-std::map<std::string, double> CustomTargets(const FamilyMeter& meter) {
+// Of colors and of application attributes, which the surface tells.
+std::map<std::string, double> TargetsByName(const FamilyMeter& meter) {
   std::map<std::string, double> targets;
   if (!meter.status().ok()) return targets;
-  for (const std::string& name : meter.custom()) {
-    const std::optional<size_t> index = meter.IndexOf(name);
-    if (index.has_value()) targets[name] = meter.targets().attributes[*index];
+  const std::vector<MeshAttribute>& attributes = meter.original().attributes;
+  for (size_t a = 0; a < attributes.size(); ++a) {
+    if (attributes[a].kind == AttributeKind::kColor || meter.custom().count(attributes[a].name) > 0)
+      targets.emplace(attributes[a].name, meter.targets().attributes[a]);
   }
   return targets;
 }
@@ -73,7 +75,7 @@ class FamilyRounder {
   FamilyRounder(const std::vector<const Primitive*>& primitives, const FamilyMeter& meter, const SurfaceErrors* own,
                 const std::vector<double>& everywhere, const std::function<bool(const RoundedFamily&)>& is_usable)
       : primitives_(primitives), meter_(meter), is_usable_(is_usable),
-        attributes_(RoundedAttributesOf(primitives, meter.attribute_targets(), meter.texels_per_unit(), CustomTargets(meter))),
+        attributes_(RoundedAttributesOf(primitives, meter.attribute_targets(), meter.texels_per_unit(), TargetsByName(meter))),
         forecast_(primitives_, attributes_), own_attributes_(attributes_.size(), 0.0),
         indices_(attributes_.size()) {
     correction_.attributes.assign(attributes_.size(), 1.0);

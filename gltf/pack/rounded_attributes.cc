@@ -13,12 +13,11 @@ bool BeginsWith(const std::string& text, const char* prefix) { return text.rfind
 
 // Target, scale, and what kind it is; empty where it has to stay exact.
 std::optional<RoundedAttribute> ToleranceOf(const Attribute& attribute, size_t member, const AttributeTargets& targets,
-                                            const TexelScale& texels_per_unit, const std::map<std::string, double>& custom) {
+                                            const TexelScale& texels_per_unit, const std::map<std::string, double>& by_name) {
   const std::string& name = attribute.name;
   if (attribute.data.type != ComponentType::kFloat) return std::nullopt;
   RoundedAttribute result;
   result.name = SoupName(attribute, member, texels_per_unit);
-  const double components = std::sqrt(attribute.data.components);  // colors' and weights' targets are per component
   if ((name == "NORMAL" && attribute.data.components == 3) || (name == "TANGENT" && attribute.data.components == 4)) {
     result.target = targets.normal_degrees;
     result.direction = true;
@@ -29,12 +28,10 @@ std::optional<RoundedAttribute> ToleranceOf(const Attribute& attribute, size_t m
     result.target = targets.uv_texels;
     result.scale = texels_per_unit(member, set);
     result.unit = "texels";
-  } else if (BeginsWith(name, "COLOR_")) {
-    result.target = targets.color * components;
   } else if (BeginsWith(name, "WEIGHTS_")) {
-    result.target = targets.weight * components;
+    result.target = targets.weight * std::sqrt(attribute.data.components);
     result.is_shown = false;
-  } else if (const auto found = custom.find(name); found != custom.end()) {
+  } else if (const auto found = by_name.find(name); found != by_name.end()) {
     result.target = found->second;
   } else {
     return std::nullopt;
@@ -83,12 +80,12 @@ AccessorData RoundedAttribute::RoundedAt(const Primitive& member, const Part& pa
 
 std::vector<RoundedAttribute> RoundedAttributesOf(const std::vector<const Primitive*>& primitives,
                                                   const AttributeTargets& targets, const TexelScale& scale,
-                                                  const std::map<std::string, double>& custom) {
+                                                  const std::map<std::string, double>& by_name) {
   std::vector<RoundedAttribute> result;
   for (size_t m = 0; m < primitives.size(); ++m) {
     for (size_t i = 0; i < primitives[m]->attributes.size(); ++i) {
       const Attribute& attribute = primitives[m]->attributes[i];
-      std::optional<RoundedAttribute> own = ToleranceOf(attribute, m, targets, scale, custom);
+      std::optional<RoundedAttribute> own = ToleranceOf(attribute, m, targets, scale, by_name);
       if (!own.has_value() || !IsFinite(attribute.data)) continue;
       auto known = std::find_if(result.begin(), result.end(), [&](const RoundedAttribute& other) {
         return other.name == own->name && other.octahedral == own->octahedral && other.direction == own->direction;

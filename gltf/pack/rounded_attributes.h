@@ -42,11 +42,11 @@ struct RoundedAttribute {
   AccessorData RoundedAt(const Primitive& member, const Part& part, int level) const;  // as a decoder returns it
 };
 
-// Attributes that nobody gave a tolerance for (JOINTS, application attributes that are not in `custom`: name and target, the length of
-// a difference) and those with values that are not finite are not in here: they stay exact.
+// by_name: targets of colors and application attributes, the length of a difference. Attributes that nobody gave a tolerance for (JOINTS, others
+// that are not named there) and those with values that are not finite are not in here: they stay exact.
 std::vector<RoundedAttribute> RoundedAttributesOf(const std::vector<const Primitive*>& primitives,
                                                   const AttributeTargets& targets, const TexelScale& scale,
-                                                  const std::map<std::string, double>& custom = {});
+                                                  const std::map<std::string, double>& by_name = {});
 
 }  // namespace lacerta
 

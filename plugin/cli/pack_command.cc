@@ -322,7 +322,8 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
       ->check(Positive());
   pack->add_option_function<double>(
           "--color-error", [arguments](double error) { arguments->attributes.color = error / 255; },
-          "At most this RMS error of each component of colors, in 255ths (default: 0.29, as integers of 8 bits have)")
+          "At most this RMS error of each component of colors as screens show them (sRGB), in 255ths; but no less than integers of 8 "
+          "bits have (default: 1.5)")
       ->check(Positive());
   pack->add_flag("--normals-everywhere", arguments->attributes.normals_everywhere,
                  "Hold the normals of simplified surfaces to --normal-error over their whole area");

@@ -85,5 +85,33 @@ TEST(FamilyMeter, TakesMoreSamplesOfATurnedAreaNearItsBound) {
   EXPECT_GT(OffAtBoundOf(10.0), 0.025);
 }
 
+// What linear light may be off for an error on screens; integers of 8 bits are 1 / (255 sqrt(12)) off.
+TEST(FamilyMeter, ColorsAreHeldToWhatScreensShow) {
+  const auto allowed = [](const std::vector<float>& grays, double error) {
+    Primitive primitive;
+    primitive.num_vertices = 3 * grays.size();
+    std::vector<Vec3f> positions, colors;
+    for (uint32_t i = 0; i < grays.size(); ++i) {
+      const float x = static_cast<float>(i);
+      positions.insert(positions.end(), {{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}});
+      colors.insert(colors.end(), 3, {grays[i], grays[i], grays[i]});
+      primitive.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    primitive.attributes = {{"POSITION", MakeFloatAccessor(positions)}, {"COLOR_0", MakeFloatAccessor(colors)}};
+    AttributeTargets targets;
+    targets.color = error / 255;
+    const FamilyMeter meter({&primitive}, 1e-3, targets, 1024, [](size_t, uint64_t) { return 1024.0; });
+    EXPECT_TRUE(meter.status().ok()) << meter.status().message();
+    return 255 * meter.targets().attributes[0] / 2;  // of three components, and of integers again
+  };
+  constexpr double kOfIntegers = 0.2887;
+  EXPECT_NEAR(allowed({1.0f}, 1.5), 1.5 * 2.4 / 1.055, 0.01);
+  EXPECT_NEAR(allowed({0.2159f}, 1.5), 1.5 / 1.0748, 0.01);  // 128 of 255 on a screen
+  EXPECT_NEAR(allowed({0.0f}, 15), 15 / 12.92, 0.01);
+  EXPECT_NEAR(allowed({0.0f}, 1.5), kOfIntegers, 0.01);
+  EXPECT_NEAR(allowed({1.0f, 0.2159f}, 1.5), 1.5 / std::sqrt((0.1932 + 1.1552) / 2), 0.01);
+  EXPECT_NEAR(allowed({5.0f}, 1.5), allowed({1.0f}, 1.5), 1e-6);  // brighter than screens
+}
+
 }  // namespace
 }  // namespace lacerta
