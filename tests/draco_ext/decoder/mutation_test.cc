@@ -40,7 +40,7 @@ constexpr double kMostSeconds = 2.0;
 ProgressiveDecoder MakeDecoder(const std::string& name) {
   RefinementOptions options;
   options.limits = kLimits;
-  if (name == "octahedron_attributes") return ProgressiveDecoder::Create(OctahedronWithAttributes(), options).value();
+  if (name.rfind("octahedron_attributes", 0) == 0) return ProgressiveDecoder::Create(OctahedronWithAttributes(), options).value();
   return ProgressiveDecoder::Create(Octahedron(), options).value();
 }
 
@@ -194,7 +194,8 @@ TEST_P(MutationTest, ChangedBytesWithTheRightChecksumDecodeOrAreRefused) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Version1, MutationTest, ::testing::Values("octahedron_4_levels", "octahedron_layers_silent_level", "octahedron_attributes"),
+INSTANTIATE_TEST_SUITE_P(Version1, MutationTest, ::testing::Values("octahedron_4_levels", "octahedron_layers_silent_level", "octahedron_attributes",
+                                                           "octahedron_attributes_chained"),
                          [](const auto& name) { return std::string(name.param); });
 
 }  // namespace
