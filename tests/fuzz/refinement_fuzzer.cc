@@ -32,7 +32,7 @@ void PutAttributes(const AttributedBase& base, int num_levels, lacerta::fuzz::Fu
   Put(static_cast<uint32_t>(base.attributes.size()), 1, bytes);
   for (const lacerta::BaseAttribute& a : base.attributes) {
     Put(static_cast<uint32_t>(a.precision.kind), 1, bytes);
-    Put(input->Byte() & 3, 1, bytes);
+    Put(input->Byte() & 7, 1, bytes);  // chained or not
     Put(a.precision.components, 1, bytes);
     Put(static_cast<uint32_t>(a.precision.name.size()), 1, bytes);
     bytes->insert(bytes->end(), a.precision.name.begin(), a.precision.name.end());
