@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "extension/target_channels.h"
+#include "geometry/vertex_area_vectors.h"
 #include "pack/morphs.h"
 
 namespace lacerta {
@@ -103,9 +104,7 @@ double ColorTarget(const AttributedMesh& mesh, const MeshAttribute& color, doubl
   double squares = 0.0, weight = 0.0;
   for (size_t f = 0; f < color.corners.size(); ++f) {
     if (color.corners[f][0] == MeshAttribute::kNoValue) continue;
-    const Triangle& t = mesh.surface.triangles[f];
-    const auto& p = mesh.surface.positions;
-    const double area = Norm(Vec3Cast<double>(Cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]])));
+    const double area = Norm(AreaVector(mesh.surface.positions, mesh.surface.triangles[f]));
     for (const uint32_t row : color.corners[f]) {
       for (uint32_t c = 0; c < std::min(color.components, 3u); ++c) {
         const double slope = SrgbSlope(static_cast<double>(color.values[size_t{row} * color.components + c]));
