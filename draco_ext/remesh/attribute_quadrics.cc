@@ -1,8 +1,12 @@
 #include "remesh/attribute_quadrics.h"
 
+#include <algorithm>
+
 namespace lacerta {
 
-void AttributeQuadrics::AddTriangle(const std::array<uint32_t, 3>& nodes, const std::array<Vec3d, 3>& corners,
+void AttributeQuadrics::Clear(uint32_t node) { std::fill_n(row(node), row_size(), 0.0); }
+
+void AttributeQuadrics::AddTriangle(uint32_t node, const std::array<Vec3d, 3>& corners,
                                     const std::array<const double*, 3>& values) {
   const Vec3d e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
   const double area = Norm(Cross(e1, e2)) / 2;
@@ -13,7 +17,8 @@ void AttributeQuadrics::AddTriangle(const std::array<uint32_t, 3>& nodes, const 
   const double g11 = SquaredNorm(e1) + ridge, g12 = Dot(e1, e2), g22 = SquaredNorm(e2) + ridge;
   const double det = g11 * g22 - g12 * g12;
   const Vec3d center = (corners[0] + corners[1] + corners[2]) * (1.0 / 3);
-  std::vector<double> row(row_size(), 0.0);
+  std::vector<double>& row = triangle_;
+  std::fill(row.begin(), row.end(), 0.0);
   row[kArea] = area;
   for (uint32_t c = 0; c < components_; ++c) {
     const double s1 = values[1][c] - values[0][c], s2 = values[2][c] - values[0][c];
@@ -27,10 +32,8 @@ void AttributeQuadrics::AddTriangle(const std::array<uint32_t, 3>& nodes, const 
     for (int i = 0; i < 3; ++i) own[i] = area * g[i];
     own[3] = area * d;
   }
-  for (const uint32_t node : nodes) {
-    double* sum = this->row(node);
-    for (size_t i = 0; i < row.size(); ++i) sum[i] += row[i];
-  }
+  double* sum = this->row(node);
+  for (size_t i = 0; i < row.size(); ++i) sum[i] += row[i];
 }
 
 void AttributeQuadrics::AddReduced(const double* row, Quadric* quadric) const {

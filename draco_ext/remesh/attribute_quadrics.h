@@ -16,13 +16,14 @@ namespace lacerta {
 class AttributeQuadrics {
  public:
   AttributeQuadrics(uint32_t components, size_t num_nodes)
-      : components_(components), sums_(num_nodes * row_size()) {}
+      : components_(components), sums_(num_nodes * row_size()), triangle_(row_size()) {}
 
   size_t row_size() const { return kFirstComponent + 4 * size_t{components_}; }
   uint32_t components() const { return components_; }
 
-  // values[k]: `components` numbers at corner k. Adds the triangle to its three nodes.
-  void AddTriangle(const std::array<uint32_t, 3>& nodes, const std::array<Vec3d, 3>& corners, const std::array<const double*, 3>& values);
+  void Clear(uint32_t node);
+  // Adds a triangle to one node. values[k]: `components` numbers at corner k.
+  void AddTriangle(uint32_t node, const std::array<Vec3d, 3>& corners, const std::array<const double*, 3>& values);
 
   const double* row(uint32_t node) const { return sums_.data() + node * row_size(); }
   double* row(uint32_t node) { return sums_.data() + node * row_size(); }
@@ -39,6 +40,7 @@ class AttributeQuadrics {
 
   uint32_t components_;
   std::vector<double> sums_;
+  std::vector<double> triangle_;  // the row that is added
 };
 
 }  // namespace lacerta

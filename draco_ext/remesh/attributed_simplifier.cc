@@ -14,6 +14,9 @@ constexpr uint32_t kNone = MeshAttribute::kNoValue;
 constexpr uint32_t kMaxRing = 128;
 // Of the planes through a curve edge that hold the curve in place; a triangle's plane weighs its area.
 constexpr double kCurveWeight = 0.3;
+// What counts of the planes of the input that a vertex stands for, as in SimplificationSequence. Curves are remembered better: what slides
+// across a seam shows, though it is too narrow to be measured. Attributes are not.
+constexpr double kRemembered = 0.1, kRememberedCurves = 0.3;
 
 }  // namespace
 
@@ -26,6 +29,7 @@ AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const We
       dead_(triangles_.size(), 0),
       curve_edges_(start.curve_edges),
       freedom_(start.freedom),
+      remembered_(start.num_vertices()),
       quadrics_(start.num_vertices()),
       rings_(start.num_vertices(), triangles_),
       version_(start.num_vertices(), 0),
@@ -42,49 +46,74 @@ AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const We
   for (size_t a = 0; a < input.attributes.size(); ++a) {
     channels_.emplace_back(input.attributes[a], start.attributes[a], weights[a], start.num_vertices());
   }
-  for (size_t f = 0; f < triangles_.size(); ++f) {
-    for (size_t k = 0; k < 3; ++k) {
-      ++valence_[triangles_[f][k]];
-      for (Channel& channel : channels_) channel.node_of_vertex[triangles_[f][k]] = channel.nodes[f][k];
-    }
-  }
-}
-
-void AttributedSimplifier::AddQuadrics() {
   double area = 0;
   for (size_t f = 0; f < triangles_.size(); ++f) {
     const Triangle& t = triangles_[f];
-    const std::array<Vec3d, 3> p = {positions_[t[0]], positions_[t[1]], positions_[t[2]]};
-    const Quadric q = Quadric::OfTriangle(p[0], p[1], p[2]);
-    for (const uint32_t v : t) quadrics_[v] += q;
-    area += Norm(Cross(p[1] - p[0], p[2] - p[0])) / 2;
-    for (Channel& channel : channels_) {
-      const Triangle& nodes = channel.nodes[f];
-      if (nodes[0] == kNone) continue;
-      std::array<const double*, 3> values{};
-      for (size_t k = 0; k < 3; ++k) values[k] = &channel.values[size_t{nodes[k]} * channel.quadrics.components()];
-      channel.quadrics.AddTriangle(nodes, p, values);
+    area += Norm(Cross(positions_[t[1]] - positions_[t[0]], positions_[t[2]] - positions_[t[0]])) / 2;
+    for (size_t k = 0; k < 3; ++k) {
+      ++valence_[triangles_[f][k]];
+      for (Channel& channel : channels_) channel.node_of_vertex[triangles_[f][k]] = channel.nodes[f][k];
     }
   }
   // Orders flat regions by edge length; elsewhere it is nothing.
   edge_weight_ = 1e-9 * area / static_cast<double>(triangles_.size());
 }
 
-// Planes through the curve edges, upright on their triangles: on both sides, or twice on the one side that an open border has.
-void AttributedSimplifier::AddCurveQuadrics() {
-  const EdgeCorners edges = GroupByEdge(start_.num_vertices(), triangles_);
-  for (uint32_t e = 0; e < edges.num_edges(); ++e) {
-    const double sides = edges.of(e).size() == 1 ? 2 : 1;
-    for (const uint32_t corner : edges.of(e)) {
-      if ((curve_edges_[corner / 3] >> (corner % 3) & 1) == 0) continue;
-      const uint32_t u = StartOfEdge(triangles_, corner), v = EndOfEdge(triangles_, corner);
-      const Vec3d &a = positions_[u], &b = positions_[v];
-      const Vec3d normal = Normalized(Cross(b - a, positions_[VertexOf(triangles_, corner)] - a));
-      const Quadric q = Quadric::OfTriangle(a, b, a + normal * (2 * sides * kCurveWeight * Norm(b - a)));
-      quadrics_[u] += q;
-      quadrics_[v] += q;
+void AttributedSimplifier::RememberPlanes() {
+  for (uint32_t v = 0; v < start_.num_vertices(); ++v) {
+    if (valence_[v] > kMaxRing) continue;
+    rings_.Collect(v, dead_, &around_);
+    auto [surface, curves] = PlanesAround(v);
+    surface *= kRemembered;
+    curves *= kRememberedCurves;
+    remembered_[v] += surface;
+    remembered_[v] += curves;
+    FindQuadrics(v);
+  }
+}
+
+// Of v and its nodes, from the triangles and curves that are there.
+void AttributedSimplifier::FindQuadrics(uint32_t v) {
+  if (valence_[v] > kMaxRing) return;  // it stands still
+  rings_.Collect(v, dead_, &around_);
+  const auto [surface, curves] = PlanesAround(v);
+  quadrics_[v] = remembered_[v];
+  quadrics_[v] += surface;
+  quadrics_[v] += curves;
+  for (Channel& channel : channels_) {
+    for (const uint32_t corner : around_) {
+      if (VertexOf(channel.nodes, corner) != kNone) channel.quadrics.Clear(VertexOf(channel.nodes, corner));
+    }
+    for (const uint32_t corner : around_) {
+      const Triangle &t = triangles_[corner / 3], &nodes = channel.nodes[corner / 3];
+      if (nodes[0] == kNone) continue;
+      std::array<const double*, 3> values{};
+      for (size_t k = 0; k < 3; ++k) values[k] = &channel.values[size_t{nodes[k]} * channel.quadrics.components()];
+      channel.quadrics.AddTriangle(nodes[corner % 3], {positions_[t[0]], positions_[t[1]], positions_[t[2]]}, values);
     }
   }
+}
+
+// Planes of the triangles around v, and planes through its curve edges, upright on their triangles: on both sides, or twice on the one side
+// that an open border has.
+AttributedSimplifier::Planes AttributedSimplifier::PlanesAround(uint32_t v) const {
+  Planes planes;
+  const auto is_open = [&](uint32_t w) {
+    return std::count_if(around_.begin(), around_.end(), [&](uint32_t corner) { return Has(corner / 3, w); }) == 1;
+  };
+  for (const uint32_t corner : around_) {
+    const Triangle& t = triangles_[corner / 3];
+    planes.surface += Quadric::OfTriangle(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+    for (const uint32_t across : {NextCorner(corner), PreviousCorner(corner)}) {
+      if ((curve_edges_[corner / 3] >> (across % 3) & 1) == 0) continue;
+      const uint32_t w = t[3 - corner % 3 - across % 3];
+      const double sides = is_open(w) ? 2 : 1;
+      const Vec3d &a = positions_[v], &b = positions_[w];
+      const Vec3d normal = Normalized(Cross(b - a, positions_[t[across % 3]] - a));
+      planes.curves += Quadric::OfTriangle(a, b, a + normal * (2 * sides * kCurveWeight * Norm(b - a)));
+    }
+  }
+  return planes;
 }
 
 void AttributedSimplifier::PushAll() {
@@ -103,17 +132,18 @@ void AttributedSimplifier::Push(uint32_t u, uint32_t v) {
   queue_.Push({static_cast<float>(Place(u, v).cost), u, v, version_[u] + version_[v]});
 }
 
-void AttributedSimplifier::PushAround(uint32_t v) {
+std::vector<uint32_t> AttributedSimplifier::NeighborsOf(uint32_t v) {
+  std::vector<uint32_t> neighbors;
   const uint32_t mark = ++last_mark_;
   mark_[v] = mark;
   rings_.Collect(v, dead_, &around_);
   for (const uint32_t corner : around_) {
     for (const uint32_t w : triangles_[corner / 3]) {
-      if (mark_[w] == mark) continue;
+      if (mark_[w] != mark) neighbors.push_back(w);
       mark_[w] = mark;
-      Push(v, w);
     }
   }
+  return neighbors;
 }
 
 bool AttributedSimplifier::IsCurve(uint32_t u, uint32_t v, const std::vector<uint32_t>& corners_u) const {
@@ -232,18 +262,20 @@ void AttributedSimplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d
   }
   rings_.Join(kept, removed);
   positions_[kept] = position;
-  quadrics_[kept] += quadrics_[removed];
+  remembered_[kept] += remembered_[removed];
   freedom_[kept] = std::max(freedom_[kept], freedom_[removed]);
   ++version_[kept];
   ++version_[removed];
   sequence_->collapses_.push_back({removed, kept, Vec3Cast<float>(position * scale_ + center_), num_alive_});
   JoinNodes();
-  PushAround(kept);
+  const std::vector<uint32_t> neighbors = NeighborsOf(kept);
+  FindQuadrics(kept);
+  for (const uint32_t w : neighbors) FindQuadrics(w);
+  for (const uint32_t w : neighbors) Push(kept, w);
 }
 
 void AttributedSimplifier::Run() {
-  AddQuadrics();
-  AddCurveQuadrics();
+  RememberPlanes();
   PushAll();
   const auto is_void = [this](const Candidate& c) { return IsVoid(c); };
   while (const std::optional<Candidate> candidate = queue_.Next(num_alive_, is_void)) {
@@ -254,7 +286,11 @@ void AttributedSimplifier::Run() {
     rings_.Collect(removed, dead_, &corners_v_);
     GatherNodes(kept, removed);
     SumNodes();
-    const Vec3d position = Place(kept, removed).position;
+    const auto [cost, position] = Place(kept, removed);
+    if (static_cast<float>(cost) > candidate->cost) {  // neighbors changed since, on which its quadrics depend, too
+      queue_.Push({static_cast<float>(cost), candidate->u, candidate->v, candidate->version});
+      continue;
+    }
     FindValues(position);
     if (!KeepsTopology(kept, removed) || AnyTurnsOver(kept, removed, corners_u_, position) ||
         AnyTurnsOver(removed, kept, corners_v_, position) || AnyTextureTurnsOver(removed, corners_u_) ||

@@ -49,11 +49,16 @@ class AttributedSimplifier {
     size_t value;           // where in new_values_
   };
 
-  void AddQuadrics();
-  void AddCurveQuadrics();
+  struct Planes {
+    Quadric surface, curves;
+  };
+
+  void RememberPlanes();
+  void FindQuadrics(uint32_t v);
+  Planes PlanesAround(uint32_t v) const;
   void PushAll();
   void Push(uint32_t u, uint32_t v);
-  void PushAround(uint32_t v);
+  std::vector<uint32_t> NeighborsOf(uint32_t v);
 
   bool MayCollapse(uint32_t u, uint32_t v);
   bool IsCurve(uint32_t u, uint32_t v, const std::vector<uint32_t>& corners_u) const;
@@ -88,7 +93,8 @@ class AttributedSimplifier {
   std::vector<Triangle> triangles_;
   std::vector<uint8_t> dead_, curve_edges_;  // per triangle
   std::vector<VertexFreedom> freedom_;
-  std::vector<Quadric> quadrics_;
+  std::vector<Quadric> remembered_;  // per vertex: planes of the input, of all vertices that came together in it
+  std::vector<Quadric> quadrics_;    // with those of its triangles and curves as they are now
   std::vector<Channel> channels_;
   CornerRings rings_;
   std::vector<uint32_t> version_, mark_, valence_;

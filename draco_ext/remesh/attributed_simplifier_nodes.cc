@@ -166,14 +166,12 @@ bool AttributedSimplifier::AnyTextureTurnsOver(uint32_t other, const std::vector
 
 void AttributedSimplifier::JoinNodes() {
   const auto num_collapses = static_cast<uint32_t>(sequence_->collapses_.size());
-  const double* sum = sums_.data();
   for (const NodeGroup& group : groups_) {
     Channel& channel = channels_[group.channel];
     AttributedSimplification::NodeHistory& history = sequence_->histories_[group.channel];
     const uint32_t components = channel.quadrics.components();
     const uint32_t kept = group_members_[group.first];
     for (uint32_t i = 1; i < group.count; ++i) history.merges.push_back({group_members_[group.first + i], kept, num_collapses});
-    std::copy_n(sum, channel.quadrics.row_size(), channel.quadrics.row(kept));
     std::copy_n(&new_values_[group.value], components, &channel.values[size_t{kept} * components]);
     history.moves.push_back({kept, num_collapses});
     for (uint32_t i = 0; i < components; ++i) {
@@ -187,7 +185,6 @@ void AttributedSimplifier::JoinNodes() {
         if (!dead_[corner / 3]) channel.node_of_vertex[triangles_[corner / 3][corner % 3]] = node;
       }
     }
-    sum += channel.quadrics.row_size();
   }
 }
 

@@ -31,6 +31,13 @@ struct Quadric {
     return *this;
   }
 
+  Quadric& operator*=(double factor) {
+    quadratic *= factor;
+    linear *= factor;
+    constant *= factor;
+    return *this;
+  }
+
   // Weighted squared distance of p; not below zero, whatever the rounding.
   double Evaluate(const Vec3d& p) const {
     const auto x = AsEigen(p);

@@ -19,7 +19,10 @@ constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 constexpr uint32_t kMaxRing = 128;
 // Of the plane through a border edge that holds the border in place; a triangle's plane weighs its area. The surface lost
 // behind a border that gives way is as narrow as the error, so that the border counts for less than the surface.
-constexpr double kBorderWeight = 0.3;
+constexpr double kBorderWeight = 0.1;
+// What counts of the planes of the input that a vertex stands for, beside those of its triangles as they are now. Without it thin parts
+// would shrink step by step, each of which is small; with all of it vertices are held to what is long gone.
+constexpr double kRemembered = 0.1;
 
 struct EdgeCandidate {
   float cost;
@@ -31,6 +34,12 @@ struct EdgeCandidate {
     return u != b.u ? u > b.u : v > b.v;
   }
 };
+
+// The plane through the border edge from a to b, upright on its triangle, whose third corner is c.
+Quadric BorderQuadric(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d normal = Normalized(Cross(b - a, c - a));
+  return Quadric::OfTriangle(a, b, a + normal * (2 * kBorderWeight * Norm(b - a)));
+}
 
 enum class Effect { kKeepsTopology, kPinches, kForbidden };
 
@@ -46,10 +55,11 @@ class Simplifier {
   void Run();
 
  private:
-  void AddQuadrics();
+  void RememberPlanes();
   void ClassifyEdges();
-  Placement Place(uint32_t u, uint32_t v) const;
-  void Push(uint32_t u, uint32_t v);
+  Quadric QuadricOf(uint32_t v);
+  Placement Place(uint32_t u, uint32_t v, const Quadric& quadric) const;
+  void Push(uint32_t u, uint32_t v, const Quadric& of_u);
   void PushAround(uint32_t v);
   std::vector<uint32_t> TrianglesOf(uint32_t v);
   Effect EffectOf(uint32_t u, uint32_t v, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v);
@@ -69,7 +79,7 @@ class Simplifier {
   std::vector<Vec3d> positions_;  // centered and scaled to unit size: quadrics lose their digits far from the origin
   std::vector<Triangle> triangles_;
   std::vector<uint8_t> dead_;  // per triangle
-  std::vector<Quadric> quadrics_;
+  std::vector<Quadric> remembered_;  // per vertex: planes of the input, of all vertices that came together in it
   CornerRings rings_;
   std::vector<uint32_t> version_, mark_;
   std::vector<uint32_t> valence_;  // living triangles of each vertex
@@ -78,6 +88,7 @@ class Simplifier {
   uint32_t num_alive_ = 0;
   double edge_weight_ = 0;
   CollapseQueue<EdgeCandidate> queue_;
+  std::vector<uint32_t> ring_;  // corners of the vertex that is looked at
 };
 
 Simplifier::Simplifier(const TriangleMesh& mesh, const std::vector<uint8_t>& held, SimplificationSequence* sequence)
@@ -85,7 +96,7 @@ Simplifier::Simplifier(const TriangleMesh& mesh, const std::vector<uint8_t>& hel
       held_(held),
       triangles_(mesh.triangles),
       dead_(mesh.triangles.size(), 0),
-      quadrics_(mesh.positions.size()),
+      remembered_(mesh.positions.size()),
       rings_(mesh.positions.size(), mesh.triangles),
       version_(mesh.positions.size(), 0),
       mark_(mesh.positions.size(), 0),
@@ -100,34 +111,33 @@ Simplifier::Simplifier(const TriangleMesh& mesh, const std::vector<uint8_t>& hel
   if (diagonal > 0) scale_ = diagonal;
   positions_.reserve(mesh.positions.size());
   for (const Vec3f& p : mesh.positions) positions_.push_back((Vec3Cast<double>(p) - center_) * (1 / scale_));
-  for (const Triangle& t : triangles_) {
-    for (const uint32_t v : t) ++valence_[v];
-  }
-}
-
-void Simplifier::AddQuadrics() {
   double area = 0;
   for (const Triangle& t : triangles_) {
-    const Vec3d &a = positions_[t[0]], &b = positions_[t[1]], &c = positions_[t[2]];
-    const Quadric q = Quadric::OfTriangle(a, b, c);
-    for (const uint32_t v : t) quadrics_[v] += q;
-    area += Norm(Cross(b - a, c - a)) / 2;
+    area += Norm(Cross(positions_[t[1]] - positions_[t[0]], positions_[t[2]] - positions_[t[0]])) / 2;
+    for (const uint32_t v : t) ++valence_[v];
   }
   // Orders flat regions by edge length; elsewhere it is nothing.
   edge_weight_ = 1e-9 * area / static_cast<double>(triangles_.size());
 }
 
+void Simplifier::RememberPlanes() {
+  for (uint32_t v = 0; v < remembered_.size(); ++v) {
+    remembered_[v] = QuadricOf(v);
+    remembered_[v] *= kRemembered;
+  }
+}
+
 void Simplifier::ClassifyEdges() {
   struct Side {
-    uint32_t low, high, corner;  // the corner across
-    bool operator<(const Side& b) const { return low != b.low ? low < b.low : high != b.high ? high < b.high : corner < b.corner; }
+    uint32_t low, high;
+    bool operator<(const Side& b) const { return low != b.low ? low < b.low : high < b.high; }
   };
   std::vector<Side> sides;
   sides.reserve(3 * triangles_.size());
   for (uint32_t corner = 0; corner < 3 * triangles_.size(); ++corner) {
     const Triangle& t = triangles_[corner / 3];
     const uint32_t a = t[(corner + 1) % 3], b = t[(corner + 2) % 3];
-    sides.push_back({std::min(a, b), std::max(a, b), corner});
+    sides.push_back({std::min(a, b), std::max(a, b)});
   }
   std::sort(sides.begin(), sides.end());
   for (size_t i = 0; i < sides.size();) {
@@ -135,34 +145,55 @@ void Simplifier::ClassifyEdges() {
     while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
     const uint32_t u = sides[i].low, v = sides[i].high;
     if (end - i != 2) on_border_[u] = on_border_[v] = 1;
-    if (end - i == 1) {  // a plane through the edge, upright on the triangle
-      const Vec3d &a = positions_[u], &b = positions_[v], &c = positions_[triangles_[sides[i].corner / 3][sides[i].corner % 3]];
-      const Vec3d normal = Normalized(Cross(b - a, c - a));
-      Quadric q = Quadric::OfTriangle(a, b, a + normal * (2 * kBorderWeight * Norm(b - a)));
-      quadrics_[u] += q;
-      quadrics_[v] += q;
-    }
     i = end;
   }
+  Quadric of_low;
   for (size_t i = 0; i < sides.size(); ++i) {
-    if (i == 0 || sides[i].low != sides[i - 1].low || sides[i].high != sides[i - 1].high) Push(sides[i].low, sides[i].high);
+    const bool is_new_vertex = i == 0 || sides[i].low != sides[i - 1].low;
+    if (is_new_vertex) of_low = QuadricOf(sides[i].low);
+    if (is_new_vertex || sides[i].high != sides[i - 1].high) Push(sides[i].low, sides[i].high, of_low);
   }
 }
 
-Placement Simplifier::Place(uint32_t u, uint32_t v) const {
-  Quadric q = quadrics_[u];
-  q += quadrics_[v];
+// The planes of the triangles and of the border edges that v has now, and what is remembered of the input's.
+Quadric Simplifier::QuadricOf(uint32_t v) {
+  Quadric q = remembered_[v];
+  rings_.Collect(v, dead_, &ring_);
+  const uint32_t once = NextMark(), again = NextMark();
+  for (const uint32_t corner : ring_) {
+    const Triangle& t = triangles_[corner / 3];
+    q += Quadric::OfTriangle(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+    for (const uint32_t w : t) mark_[w] = mark_[w] == once || mark_[w] == again ? again : once;
+  }
+  for (const uint32_t corner : ring_) {
+    const Triangle& t = triangles_[corner / 3];
+    const uint32_t next = t[(corner + 1) % 3], previous = t[(corner + 2) % 3];
+    if (mark_[next] == once) q += BorderQuadric(positions_[v], positions_[next], positions_[previous]);
+    if (mark_[previous] == once) q += BorderQuadric(positions_[v], positions_[previous], positions_[next]);
+  }
+  return q;
+}
+
+// quadric: of both.
+Placement Simplifier::Place(uint32_t u, uint32_t v, const Quadric& quadric) const {
   const bool is_free = !IsHeld(u) && !IsHeld(v);
   const Vec3d& fixed = positions_[IsHeld(u) ? u : v];
-  Placement best = is_free ? PlaceBetween(q, positions_[u], positions_[v]) : Placement{q.Evaluate(fixed), fixed};
+  Placement best = is_free ? PlaceBetween(quadric, positions_[u], positions_[v]) : Placement{quadric.Evaluate(fixed), fixed};
   best.cost += edge_weight_ * SquaredNorm(positions_[u] - positions_[v]);
   return best;
 }
 
-void Simplifier::Push(uint32_t u, uint32_t v) {
+// of_u: QuadricOf(u).
+void Simplifier::Push(uint32_t u, uint32_t v, const Quadric& of_u) {
   if (IsHeld(u) && IsHeld(v)) return;
+  if (valence_[u] + valence_[v] > kMaxRing) {
+    queue_.Block({0, std::min(u, v), std::max(u, v), version_[u] + version_[v], false});
+    return;
+  }
+  Quadric q = QuadricOf(v);
+  q += of_u;
   if (u > v) std::swap(u, v);
-  queue_.Push({static_cast<float>(Place(u, v).cost), u, v, version_[u] + version_[v], false});
+  queue_.Push({static_cast<float>(Place(u, v, q).cost), u, v, version_[u] + version_[v], false});
 }
 
 uint32_t Simplifier::NextMark() { return ++last_mark_; }
@@ -176,15 +207,17 @@ std::vector<uint32_t> Simplifier::TrianglesOf(uint32_t v) {
 }
 
 void Simplifier::PushAround(uint32_t v) {
+  std::vector<uint32_t> neighbors;
   const uint32_t mark = NextMark();
   mark_[v] = mark;
   for (const uint32_t t : TrianglesOf(v)) {
     for (const uint32_t w : triangles_[t]) {
-      if (mark_[w] == mark) continue;
+      if (mark_[w] != mark) neighbors.push_back(w);
       mark_[w] = mark;
-      Push(v, w);
     }
   }
+  const Quadric of_v = QuadricOf(v);
+  for (const uint32_t w : neighbors) Push(v, w, of_v);
 }
 
 // The topology is kept under the link condition: u and v have no neighbours in common but those across their edge, and no two
@@ -287,7 +320,7 @@ void Simplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position
   }
   rings_.Join(kept, removed);
   positions_[kept] = position;
-  quadrics_[kept] += quadrics_[removed];
+  remembered_[kept] += remembered_[removed];
   on_border_[kept] = on_border_[kept] || on_border_[removed];
   ++version_[kept];
   ++version_[removed];
@@ -298,7 +331,7 @@ void Simplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position
 }
 
 void Simplifier::Run() {
-  AddQuadrics();
+  RememberPlanes();
   ClassifyEdges();
   const auto is_void = [this](const EdgeCandidate& e) {
     return e.version != version_[e.u] + version_[e.v] || rings_.is_empty(e.u) || rings_.is_empty(e.v);
@@ -309,8 +342,15 @@ void Simplifier::Run() {
       queue_.Block(edge);
       continue;
     }
+    Quadric quadric = QuadricOf(edge.u);
+    quadric += QuadricOf(edge.v);
+    const Placement placement = Place(edge.u, edge.v, quadric);
+    const float cost = (edge.may_pinch ? kPinchPenalty : 1) * static_cast<float>(placement.cost);
+    if (cost > edge.cost) {  // neighbors changed since, on which its planes depend, too
+      queue_.Push({cost, edge.u, edge.v, edge.version, edge.may_pinch});
+      continue;
+    }
     const std::vector<uint32_t> around_u = TrianglesOf(edge.u), around_v = TrianglesOf(edge.v);
-    const Placement placement = Place(edge.u, edge.v);
     const Effect effect = EffectOf(edge.u, edge.v, around_u, around_v);
     if (effect == Effect::kPinches && !edge.may_pinch) {
       queue_.Push({kPinchPenalty * edge.cost, edge.u, edge.v, edge.version, true});
