@@ -8,6 +8,7 @@
 #include "geometry/bounding_box.h"
 #include "remesh/collapse_queue.h"
 #include "remesh/corner_rings.h"
+#include "remesh/folds.h"
 #include "remesh/placement.h"
 #include "remesh/quadric.h"
 
@@ -28,7 +29,6 @@ struct EdgeCandidate {
   float cost;
   uint32_t u, v;
   uint32_t version;    // of both ends; when an end has changed since, the entry is void
-  bool may_pinch;      // even if the topology changes
   bool operator<(const EdgeCandidate& b) const {  // for a heap with the cheapest on top
     if (cost != b.cost) return cost > b.cost;
     return u != b.u ? u > b.u : v > b.v;
@@ -45,7 +45,10 @@ enum class Effect { kKeepsTopology, kPinches, kForbidden };
 
 // What a collapse that changes the topology costs more. Handles and gaps as small as the error have to go, or the mesh would never
 // get small; the quadrics tell how small they are, but not of everything that gets lost.
-constexpr float kPinchPenalty = 4;
+constexpr double kPinchPenalty = 4;
+// What it costs to lay triangles on their neighbors: of a needle, whose plane says nothing, a web is drawn at no cost in quadrics. How far
+// the web is from the surface is not known, but no farther than the length of the edge: about a fifth of it.
+constexpr double kFoldPenalty = 0.2;
 
 }  // namespace
 
@@ -68,6 +71,8 @@ class Simplifier {
   bool LosesHeld(uint32_t u, uint32_t v, const std::vector<uint32_t>& around_u) const;
   void RemoveCoincident(uint32_t v);
   void Kill(uint32_t triangle);
+  void AddSpokes(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around);
+  double NewFolds(uint32_t u, uint32_t v, const Vec3d& to, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v);
   bool AnyTurnsOver(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around) const;
   void Collapse(uint32_t kept, uint32_t removed, const Vec3d& position, const std::vector<uint32_t>& around_removed, bool pinched);
   uint32_t NextMark();
@@ -89,6 +94,7 @@ class Simplifier {
   double edge_weight_ = 0;
   CollapseQueue<EdgeCandidate> queue_;
   std::vector<uint32_t> ring_;  // corners of the vertex that is looked at
+  FoldedSpokes spokes_;
 };
 
 Simplifier::Simplifier(const TriangleMesh& mesh, const std::vector<uint8_t>& held, SimplificationSequence* sequence)
@@ -187,13 +193,13 @@ Placement Simplifier::Place(uint32_t u, uint32_t v, const Quadric& quadric) cons
 void Simplifier::Push(uint32_t u, uint32_t v, const Quadric& of_u) {
   if (IsHeld(u) && IsHeld(v)) return;
   if (valence_[u] + valence_[v] > kMaxRing) {
-    queue_.Block({0, std::min(u, v), std::max(u, v), version_[u] + version_[v], false});
+    queue_.Block({0, std::min(u, v), std::max(u, v), version_[u] + version_[v]});
     return;
   }
   Quadric q = QuadricOf(v);
   q += of_u;
   if (u > v) std::swap(u, v);
-  queue_.Push({static_cast<float>(Place(u, v, q).cost), u, v, version_[u] + version_[v], false});
+  queue_.Push({static_cast<float>(Place(u, v, q).cost), u, v, version_[u] + version_[v]});
 }
 
 uint32_t Simplifier::NextMark() { return ++last_mark_; }
@@ -307,6 +313,29 @@ bool Simplifier::AnyTurnsOver(uint32_t moved, uint32_t other, const Vec3d& to, c
   });
 }
 
+// The triangles of `moved` but for those of `other`, as if it were at `to`.
+void Simplifier::AddSpokes(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around) {
+  for (const uint32_t t : around) {
+    const Triangle& c = triangles_[t];
+    if (c[0] == other || c[1] == other || c[2] == other) continue;
+    const int k = c[0] == moved ? 0 : c[1] == moved ? 1 : 2;
+    const uint32_t next = c[(k + 1) % 3], previous = c[(k + 2) % 3];
+    spokes_.Add(next, previous, Cross(positions_[next] - to, positions_[previous] - to));
+  }
+}
+
+// The area that lies on its neighbors after a collapse and does not before.
+double Simplifier::NewFolds(uint32_t u, uint32_t v, const Vec3d& to, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v) {
+  AddSpokes(u, v, to, around_u);
+  AddSpokes(v, u, to, around_v);
+  const double after = spokes_.TakeArea();
+  if (after == 0) return 0;
+  AddSpokes(u, kNone, positions_[u], around_u);
+  const double before_u = spokes_.TakeArea();
+  AddSpokes(v, kNone, positions_[v], around_v);
+  return std::max(0.0, after - before_u - spokes_.TakeArea());
+}
+
 void Simplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position, const std::vector<uint32_t>& around_removed,
                           bool pinched) {
   for (const uint32_t t : around_removed) {
@@ -342,31 +371,31 @@ void Simplifier::Run() {
       queue_.Block(edge);
       continue;
     }
+    // Neighbors may have changed since, on which its planes depend, too; and what else it costs is not known before.
+    const auto is_dearer = [&](double now) {
+      if (static_cast<float>(now) <= edge.cost) return false;
+      queue_.Push({static_cast<float>(now), edge.u, edge.v, edge.version});
+      return true;
+    };
     Quadric quadric = QuadricOf(edge.u);
     quadric += QuadricOf(edge.v);
-    const Placement placement = Place(edge.u, edge.v, quadric);
-    const float cost = (edge.may_pinch ? kPinchPenalty : 1) * static_cast<float>(placement.cost);
-    if (cost > edge.cost) {  // neighbors changed since, on which its planes depend, too
-      queue_.Push({cost, edge.u, edge.v, edge.version, edge.may_pinch});
-      continue;
-    }
+    const auto [cost, position] = Place(edge.u, edge.v, quadric);
+    if (is_dearer(cost)) continue;
     const std::vector<uint32_t> around_u = TrianglesOf(edge.u), around_v = TrianglesOf(edge.v);
     const Effect effect = EffectOf(edge.u, edge.v, around_u, around_v);
-    if (effect == Effect::kPinches && !edge.may_pinch) {
-      queue_.Push({kPinchPenalty * edge.cost, edge.u, edge.v, edge.version, true});
-      continue;
-    }
     if (effect == Effect::kForbidden) continue;  // for good: what could change that changes an end, too, which brings the edge again
     const bool pinches = effect == Effect::kPinches;
-    if (AnyTurnsOver(edge.u, edge.v, placement.position, around_u) || AnyTurnsOver(edge.v, edge.u, placement.position, around_v) ||
+    if (AnyTurnsOver(edge.u, edge.v, position, around_u) || AnyTurnsOver(edge.v, edge.u, position, around_v) ||
         LosesHeld(edge.u, edge.v, around_u) || (pinches && (IsNearHeld(around_u) || IsNearHeld(around_v)))) {
       queue_.Block(edge);
       continue;
     }
+    const double folds = NewFolds(edge.u, edge.v, position, around_u, around_v) * SquaredNorm(positions_[edge.u] - positions_[edge.v]);
+    if (is_dearer((pinches ? kPinchPenalty : 1) * cost + kFoldPenalty * folds)) continue;
     if (IsHeld(edge.v)) {
-      Collapse(edge.v, edge.u, placement.position, around_u, pinches);
+      Collapse(edge.v, edge.u, position, around_u, pinches);
     } else {
-      Collapse(edge.u, edge.v, placement.position, around_v, pinches);
+      Collapse(edge.u, edge.v, position, around_v, pinches);
     }
   }
 }
