@@ -11,6 +11,7 @@
 #include "draco/simplified_size.h"
 #include "draco/zero_level.h"
 #include "draco/zero_level_candidate.h"
+#include "remesh/fitted_simplify.h"
 #include "remesh/simplify.h"
 
 namespace lacerta {
@@ -46,7 +47,7 @@ class ZeroLevelSearch {
   // Looks for the best number of triangles, from what earlier calls found. most_bytes: of a stream that there is at the PSNR; false
   // where it is hopeless to become smaller than that.
   StatusOr<bool> FindSize(double most_bytes) {
-    if (first_ == 0) first_ = FirstSize();
+    if (first_ == 0) Begin();
     LACERTA_RETURN_IF_ERROR(Look(first_));
     const Trial& trial = tried_.at(first_);
     if (!target_.is_rate && trial.meets && static_cast<double>(trial.bytes) > kHopeless * most_bytes) return false;
@@ -140,10 +141,11 @@ class ZeroLevelSearch {
 
   // With samples for its size.
   std::unique_ptr<ZeroLevelCandidate> CandidateOf(uint32_t triangles) {
-    TakeSamples(4, triangles);
     using Source = ZeroLevelCandidate::Source;
     const Source source = triangles >= mesh_.triangles.size() ? Source::kInput : Source::kSimplified;
-    return std::make_unique<ZeroLevelCandidate>(fit_target_, sequence_.MeshWith(triangles), source);
+    TriangleMesh simplified = simplified_->MeshWith(triangles);
+    TakeSamples(4, triangles);
+    return std::make_unique<ZeroLevelCandidate>(fit_target_, std::move(simplified), source);
   }
 
   // Goes on from the best size, of this squared distance, to one that may well meet the PSNR.
@@ -167,6 +169,13 @@ class ZeroLevelSearch {
   uint32_t Clamped(double triangles) const {
     return static_cast<uint32_t>(std::clamp(triangles, static_cast<double>(sequence_.fewest_triangles()),
                                             static_cast<double>(mesh_.triangles.size())));
+  }
+
+  void Begin() {
+    constexpr double kLargest = 1.6;  // times the first size: the best one is hardly ever larger, and steps from above gain no more
+    first_ = FirstSize();
+    const double largest = std::min({kLargest * first_, static_cast<double>(mesh_.triangles.size()), 1.0 * ZeroLevelCandidate::kMostFittedTriangles});
+    simplified_.emplace(sequence_, FittedSimplification::Options{static_cast<uint32_t>(largest), FewestSamples(mesh_), kMostSamples}, &fit_target_);
   }
 
   // The size at which the simplified mesh, before the fit, is at the target but for what the fit usually gains.
@@ -309,6 +318,7 @@ class ZeroLevelSearch {
   const double tries_;  // SearchEffort::zero_level_tries
   const SimplificationSequence& sequence_;
   FitTarget fit_target_;
+  std::optional<FittedSimplification> simplified_;
   double distortion_ = 0;  // of a PSNR target
   std::map<uint32_t, Trial> tried_;  // by number of triangles asked for
   uint32_t first_ = 0, best_ = 0;    // of those

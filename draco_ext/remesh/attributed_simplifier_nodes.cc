@@ -97,7 +97,10 @@ Placement AttributedSimplifier::Place(uint32_t u, uint32_t v) {
     result.position = positions_[freedom_[u] == VertexFreedom::kFixed ? u : v];
     result.cost = q.Evaluate(result.position);
   } else {
-    result = PlaceBetween(q, positions_[u], positions_[v]);
+    // Curves that nearly meet, as at the tip of a slit, cross far beyond it.
+    constexpr double kFarthest = 2, kFarthestOnCurve = 0.5;
+    const bool is_on_curve = freedom_[u] != VertexFreedom::kSurface || freedom_[v] != VertexFreedom::kSurface;
+    result = PlaceBetween(q, positions_[u], positions_[v], is_on_curve ? kFarthestOnCurve : kFarthest);
   }
   result.cost += edge_weight_ * SquaredNorm(positions_[u] - positions_[v]);
   return result;

@@ -14,7 +14,8 @@ struct Placement {
 };
 
 // Least value of the quadric near the edge from a to b, in its middle where the quadric does not tell, as along a flat region or a crease.
-inline Placement PlaceBetween(const Quadric& q, const Vec3d& a, const Vec3d& b) {
+// farthest: from the middle, in lengths of the edge; at least a half.
+inline Placement PlaceBetween(const Quadric& q, const Vec3d& a, const Vec3d& b, double farthest = 2) {
   const Vec3d middle = (a + b) * 0.5;
   const Eigen::Map<const Eigen::Vector3d> m(&middle.x);
   const double trace = q.quadratic.trace();
@@ -27,7 +28,7 @@ inline Placement PlaceBetween(const Quadric& q, const Vec3d& a, const Vec3d& b) 
     const Eigen::Vector3d x = m - damped.inverse() * gradient;
     const Vec3d optimum{x[0], x[1], x[2]};
     const double cost = q.Evaluate(optimum);
-    if (cost < best.cost && SquaredNorm(optimum - middle) < 4 * SquaredNorm(a - b)) best = {cost, optimum};
+    if (cost < best.cost && SquaredNorm(optimum - middle) < farthest * farthest * SquaredNorm(a - b)) best = {cost, optimum};
   }
   for (const Vec3d& end : {a, b}) {
     const double cost = q.Evaluate(end);

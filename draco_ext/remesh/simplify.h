@@ -1,5 +1,6 @@
-// Simplification of any triangles by edge collapses in order of quadric error [Garland, Heckbert 1997], recorded so that the mesh
-// can be had at every size from one run [Hoppe 1996]. There is no parametrization; for that see decimate.h.
+// Simplification of any triangles by edge collapses in order of quadric error [Garland, Heckbert 1997], most of it of the planes that are
+// there at the moment [Hoppe 1999], recorded so that the mesh can be had at every size from one run [Hoppe 1996]. There is no
+// parametrization; for that see decimate.h.
 #ifndef LACERTA_REMESH_SIMPLIFY_H_
 #define LACERTA_REMESH_SIMPLIFY_H_
 

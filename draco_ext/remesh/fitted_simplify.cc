@@ -1,0 +1,40 @@
+#include "remesh/fitted_simplify.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "remesh/mesh_fit.h"
+#include "remesh/mesh_neighbors.h"
+
+namespace lacerta {
+namespace {
+
+// Of the size of one step to that before. Smaller ones gain as much, and take longer.
+constexpr double kStepRatio = 1 / 1.1;
+
+}  // namespace
+
+FittedSimplification::FittedSimplification(const SimplificationSequence& sequence, const Options& options, FitTarget* target)
+    : sequence_(sequence), options_(options), target_(target) {}
+
+FittedSimplification::Step FittedSimplification::Fitted(TriangleMesh mesh, uint32_t num_triangles) const {
+  constexpr size_t kSamplesPerTriangle = 4;
+  constexpr int kRounds = 1;
+  target_->Resample(std::clamp(kSamplesPerTriangle * mesh.triangles.size(), options_.fewest_samples, options_.most_samples));
+  FitToSurface(*target_, MeshNeighbors(mesh), RateModel(), kRounds, &mesh);
+  return {num_triangles, SimplificationSequence(mesh)};
+}
+
+TriangleMesh FittedSimplification::MeshWith(uint32_t num_triangles) {
+  if (num_triangles > options_.largest || num_triangles >= sequence_.num_input_triangles()) return sequence_.MeshWith(num_triangles);
+  if (steps_.empty()) steps_.push_back(Fitted(sequence_.MeshWith(options_.largest), options_.largest));
+  for (;;) {
+    const auto next = static_cast<uint32_t>(kStepRatio * steps_.back().num_triangles);
+    if (next < num_triangles || next == steps_.back().num_triangles) break;
+    steps_.push_back(Fitted(steps_.back().sequence.MeshWith(next), next));
+  }
+  const auto is_large_enough = [&](const Step& step) { return step.num_triangles >= num_triangles; };
+  return std::find_if(steps_.rbegin(), steps_.rend(), is_large_enough)->sequence.MeshWith(num_triangles);
+}
+
+}  // namespace lacerta
