@@ -7,6 +7,9 @@
 namespace lacerta {
 namespace {
 
+// More would take samples without end, and gain little: what is so fine is near the input anyway.
+constexpr size_t kMostFittedTriangles = 60000;
+
 double Distortion(const DistanceModel& model) { return std::max(model.forward, model.backward); }
 
 }  // namespace

@@ -24,9 +24,6 @@ class ZeroLevelCandidate {
     CodedZeroLevel coded;
   };
 
-  // Larger meshes are not fitted: that would take samples without end, and gain little, for what is so fine is near the input anyway.
-  static constexpr size_t kMostFittedTriangles = 60000;
-
   // Whether `mesh` is the input as it is: then there is nothing to fit.
   enum class Source { kInput, kSimplified };
 

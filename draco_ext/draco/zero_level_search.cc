@@ -174,7 +174,8 @@ class ZeroLevelSearch {
   void Begin() {
     constexpr double kLargest = 1.6;  // times the first size: the best one is hardly ever larger, and steps from above gain no more
     first_ = FirstSize();
-    const double largest = std::min({kLargest * first_, static_cast<double>(mesh_.triangles.size()), 1.0 * ZeroLevelCandidate::kMostFittedTriangles});
+    constexpr double kMostStepped = 20'000;  // triangles: fits of more take long
+    const double largest = std::min({kLargest * first_, static_cast<double>(mesh_.triangles.size()), kMostStepped});
     simplified_.emplace(sequence_, FittedSimplification::Options{static_cast<uint32_t>(largest), FewestSamples(mesh_), kMostSamples}, &fit_target_);
   }
 
