@@ -108,9 +108,7 @@ AttributedSimplifier::Planes AttributedSimplifier::PlanesAround(uint32_t v) cons
       if ((curve_edges_[corner / 3] >> (across % 3) & 1) == 0) continue;
       const uint32_t w = t[3 - corner % 3 - across % 3];
       const double sides = is_open(w) ? 2 : 1;
-      const Vec3d &a = positions_[v], &b = positions_[w];
-      const Vec3d normal = Normalized(Cross(b - a, positions_[t[across % 3]] - a));
-      planes.curves += Quadric::OfTriangle(a, b, a + normal * (2 * sides * kCurveWeight * Norm(b - a)));
+      planes.curves += Quadric::OfBorder(positions_[v], positions_[w], positions_[t[across % 3]], sides * kCurveWeight);
     }
   }
   return planes;

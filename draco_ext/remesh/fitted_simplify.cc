@@ -1,7 +1,6 @@
 #include "remesh/fitted_simplify.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "remesh/mesh_fit.h"
 #include "remesh/mesh_neighbors.h"
@@ -22,7 +21,7 @@ FittedSimplification::Step FittedSimplification::Fitted(TriangleMesh mesh, uint3
   constexpr int kRounds = 1;
   target_->Resample(std::clamp(kSamplesPerTriangle * mesh.triangles.size(), options_.fewest_samples, options_.most_samples));
   FitToSurface(*target_, MeshNeighbors(mesh), RateModel(), kRounds, &mesh);
-  return {num_triangles, std::move(mesh)};
+  return {num_triangles, SimplificationSequence(mesh)};
 }
 
 TriangleMesh FittedSimplification::MeshWith(uint32_t num_triangles) {
@@ -31,10 +30,10 @@ TriangleMesh FittedSimplification::MeshWith(uint32_t num_triangles) {
   for (;;) {
     const auto next = static_cast<uint32_t>(kStepRatio * steps_.back().num_triangles);
     if (next < num_triangles || next == steps_.back().num_triangles) break;
-    steps_.push_back(Fitted(SimplificationSequence(steps_.back().mesh).MeshWith(next), next));
+    steps_.push_back(Fitted(steps_.back().sequence.MeshWith(next), next));
   }
   const auto is_large_enough = [&](const Step& step) { return step.num_triangles >= num_triangles; };
-  return SimplificationSequence(std::find_if(steps_.rbegin(), steps_.rend(), is_large_enough)->mesh).MeshWith(num_triangles);
+  return std::find_if(steps_.rbegin(), steps_.rend(), is_large_enough)->sequence.MeshWith(num_triangles);
 }
 
 }  // namespace lacerta

@@ -31,7 +31,7 @@ class FittedSimplification {
  private:
   struct Step {
     uint32_t num_triangles;
-    TriangleMesh mesh;  // fitted; its sequence would take more memory, and takes little time
+    SimplificationSequence sequence;  // of the fitted mesh
   };
 
   Step Fitted(TriangleMesh mesh, uint32_t num_triangles) const;

@@ -24,6 +24,12 @@ struct Quadric {
     return {area * n * n.transpose(), area * d * n, area * d * d};
   }
 
+  // The plane through the edge from a to b, upright on its triangle, whose third corner is c, weighted by `weight` times the squared length.
+  static Quadric OfBorder(const Vec3d& a, const Vec3d& b, const Vec3d& c, double weight) {
+    const Vec3d normal = Normalized(Cross(b - a, c - a));
+    return OfTriangle(a, b, a + normal * (2 * weight * Norm(b - a)));
+  }
+
   Quadric& operator+=(const Quadric& b) {
     quadratic += b.quadratic;
     linear += b.linear;

@@ -35,12 +35,6 @@ struct EdgeCandidate {
   }
 };
 
-// The plane through the border edge from a to b, upright on its triangle, whose third corner is c.
-Quadric BorderQuadric(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Vec3d normal = Normalized(Cross(b - a, c - a));
-  return Quadric::OfTriangle(a, b, a + normal * (2 * kBorderWeight * Norm(b - a)));
-}
-
 enum class Effect { kKeepsTopology, kPinches, kForbidden };
 
 // What a collapse that changes the topology costs more. Handles and gaps as small as the error have to go, or the mesh would never
@@ -174,8 +168,8 @@ Quadric Simplifier::QuadricOf(uint32_t v) {
   for (const uint32_t corner : ring_) {
     const Triangle& t = triangles_[corner / 3];
     const uint32_t next = t[(corner + 1) % 3], previous = t[(corner + 2) % 3];
-    if (mark_[next] == once) q += BorderQuadric(positions_[v], positions_[next], positions_[previous]);
-    if (mark_[previous] == once) q += BorderQuadric(positions_[v], positions_[previous], positions_[next]);
+    if (mark_[next] == once) q += Quadric::OfBorder(positions_[v], positions_[next], positions_[previous], kBorderWeight);
+    if (mark_[previous] == once) q += Quadric::OfBorder(positions_[v], positions_[previous], positions_[next], kBorderWeight);
   }
   return q;
 }

@@ -81,7 +81,7 @@ double OffAtBoundOf(double times) {
 }
 
 TEST(FamilyMeter, TakesMoreSamplesOfATurnedAreaNearItsBound) {
-  EXPECT_LT(OffAtBoundOf(1.25), 0.015);  // of which 0.85 are for the samples of the search
+  EXPECT_LT(OffAtBoundOf(1.25), 0.015);  // it is held to 0.85 of that
   EXPECT_GT(OffAtBoundOf(10.0), 0.025);
 }
 
