@@ -16,6 +16,7 @@
 #include "pack/repair.h"
 #include "pack/replace_geometry.h"
 #include "pack/single_mesh.h"
+#include "pack/unused_attributes.h"
 
 namespace lacerta {
 namespace {
@@ -234,24 +235,26 @@ StatusOr<PackResult> StorePlans(GltfDocument document, const std::vector<Primiti
   return result;
 }
 
+StatusOr<PackResult> WithNotes(StatusOr<PackResult> result, const std::vector<std::string>& notes) {
+  if (result.ok()) result.value().report.notes.insert(result.value().report.notes.begin(), notes.begin(), notes.end());
+  return result;
+}
+
 StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& options) {
   LACERTA_RETURN_IF_ERROR(CheckOptions(options));
   if (UsesExtension(document.json, kProgressiveName)) {
     return Unsupported("the asset is packed already; unpack it first, or pack the original, which loses less");
   }
   LACERTA_ASSIGN_OR_RETURN(const std::vector<PrimitivePlan> plans, PlanPrimitives(document, options));
-  return StorePlans(std::move(document), plans, options);
+  std::vector<std::string> notes;
+  if (const std::string unused = DescribeUnused(document); !unused.empty()) notes.push_back(unused + (options.drop_unused ? "; dropped" : "; kept, --drop-unused drops it"));
+  return WithNotes(StorePlans(std::move(document), plans, options), notes);
 }
 
 StatusOr<PackResult> PackLargeShape(FileMesh mesh, const std::string& name, const PackOptions& options) {
   LACERTA_RETURN_IF_ERROR(CheckOptions(options));
   LACERTA_ASSIGN_OR_RETURN(LargeShape shape, PlanLargeShape(std::move(mesh), name, options));
   return StorePlans(std::move(shape.document), shape.plans, options);
-}
-
-StatusOr<PackResult> WithNotes(StatusOr<PackResult> result, const std::vector<std::string>& notes) {
-  if (result.ok()) result.value().report.notes.insert(result.value().report.notes.begin(), notes.begin(), notes.end());
-  return result;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "document/normals.h"
 #include "extension/progressive.h"
 #include "pack/repair.h"
+#include "pack/unused_attributes.h"
 
 namespace lacerta {
 namespace {
@@ -72,6 +73,14 @@ void TakeOffFlatNormals(const GltfDocument& document, const Json& json, Source* 
   }
 }
 
+// Takes off what is_idle(attribute) says, unless a target would be left with nothing; whether it did.
+template <typename IsIdle>
+bool TakeOffTargets(const IsIdle& is_idle, std::vector<MorphTarget>* targets) {
+  if (std::any_of(targets->begin(), targets->end(), [&](const MorphTarget& t) { return std::all_of(t.begin(), t.end(), is_idle); })) return false;
+  for (MorphTarget& target : *targets) target.erase(std::remove_if(target.begin(), target.end(), is_idle), target.end());
+  return true;
+}
+
 // Takes off what moves nothing in any target, as programs write it for normals and tangents that they do not morph: it is what its
 // absence says. Offsets of positions stay.
 void TakeOffZeroOffsets(std::vector<MorphTarget>* targets) {
@@ -85,12 +94,19 @@ void TakeOffZeroOffsets(std::vector<MorphTarget>* targets) {
       }
     }
   }
-  const auto is_zero = [&](const Attribute& attribute) { return kept.count(attribute.name) == 0; };
-  if (std::any_of(targets->begin(), targets->end(), [&](const MorphTarget& t) { return std::all_of(t.begin(), t.end(), is_zero); })) return;
-  for (MorphTarget& target : *targets) target.erase(std::remove_if(target.begin(), target.end(), is_zero), target.end());
+  TakeOffTargets([&](const Attribute& attribute) { return kept.count(attribute.name) == 0; }, targets);
 }
 
-Status ReadSource(const GltfDocument& document, const Json& json, Source* source) {
+void TakeOffUnused(const GltfDocument& document, Source* source) {
+  const auto is_unused = [&](const Attribute& attribute) { return IsUnused(document, source->places, attribute.name); };
+  if (!TakeOffTargets(is_unused, &source->targets)) return;
+  std::vector<Attribute>& attributes = source->primitive->attributes;
+  attributes.erase(std::remove_if(attributes.begin(), attributes.end(), is_unused), attributes.end());
+}
+
+// source: its places are set.
+Status ReadSource(const GltfDocument& document, bool drop_unused, Source* source) {
+  const Json& json = PrimitiveAt(document, source->places[0]);
   source->reason = ReasonToKeep(json);
   if (!source->reason.empty()) return Status();
   StatusOr<Primitive> primitive = ReadPrimitive(document, json, DecodeLimits{});
@@ -106,6 +122,7 @@ Status ReadSource(const GltfDocument& document, const Json& json, Source* source
   source->targets = std::move(targets).value();
   RoundAnew(&*source->primitive);
   TakeOffZeroOffsets(&source->targets);
+  if (drop_unused) TakeOffUnused(document, source);
   TakeOffFlatNormals(document, json, source);
   return Status();
 }
@@ -191,13 +208,13 @@ StatusOr<std::vector<MorphTarget>> ReadTargets(const GltfDocument& document, con
   return targets;
 }
 
-StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document) {
+StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document, bool drop_unused) {
   std::vector<Source> sources;
   for (const std::vector<Place>& places : GroupByGeometry(document)) {
     Source source;
     source.places = places;
     source.geometries = {places[0]};
-    const Status status = ReadSource(document, PrimitiveAt(document, places[0]), &source);
+    const Status status = ReadSource(document, drop_unused, &source);
     if (!status.ok()) return status.WithContext(PlaceName(document, places[0]));
     sources.push_back(std::move(source));
   }

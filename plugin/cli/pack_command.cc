@@ -42,6 +42,7 @@ struct PackArguments {
   bool external = false;
   bool keep_vertices = false;
   bool shape_only = false;
+  bool drop_unused = false;
   bool repair = false;
   bool float_targets = false;
   BatchOptions batch;
@@ -211,6 +212,7 @@ StatusOr<FileOutcome> PackAsset(const PackArguments& arguments, const EncodeOpti
   options.encode = encode;
   options.attributes = arguments.attributes;
   options.simplify = !arguments.keep_vertices;
+  options.drop_unused = arguments.drop_unused;
   options.repair = arguments.repair;
   options.float_targets = arguments.float_targets;
   if (arguments.fallback == "plain") options.fallback = Fallback::kPlain;
@@ -349,6 +351,9 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
                  "Leave offsets of morph targets floats, for readers that do not know KHR_mesh_quantization");
   pack->add_flag("--shape-only", arguments->shape_only,
                  "Of .obj and .ply files take the shape alone, without texture coordinates, normals, colors and materials");
+  pack->add_flag("--drop-unused", arguments->drop_unused,
+                 "Leave out attributes that nothing in the asset shows: texture coordinates without a texture, tangents without a normal map, colors beyond "
+                 "COLOR_0, weights without a skin");
   pack->add_flag("--repair", arguments->repair,
                  "Mend numbers that are not finite instead of refusing the file, and tell so: vertices without a position go with their triangles, "
                  "other values follow those beside them");

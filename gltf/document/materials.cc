@@ -1,0 +1,45 @@
+#include "document/materials.h"
+
+#include <optional>
+
+namespace lacerta {
+namespace {
+
+void AddMaterial(const Json& object, std::set<uint64_t>* materials) {
+  if (const std::optional<uint64_t> material = AsIndex(Find(object, "material"))) materials->insert(*material);
+}
+
+}  // namespace
+
+std::set<uint64_t> MaterialsOf(const GltfDocument& document, const std::vector<Place>& places) {
+  std::set<uint64_t> materials;
+  for (const Place& place : places) {
+    const Json& primitive = PrimitiveAt(document, place);
+    AddMaterial(primitive, &materials);
+    const Json* variants = PrimitiveExtension(primitive, "KHR_materials_variants");
+    for (uint64_t i = 0; variants != nullptr && i < ArraySize(*variants, "mappings"); ++i) {
+      AddMaterial(*FindElement(*variants, "mappings", i), &materials);
+    }
+  }
+  return materials;
+}
+
+void VisitTextures(const Json& material, const std::function<void(const std::string& role, const Json& texture)>& visit) {
+  if (!material.is_structured()) return;
+  for (const auto& [key, value] : material.items()) {
+    if (value.is_object() && Find(value, "index") != nullptr) {
+      visit(key, value);
+    } else {
+      VisitTextures(value, visit);
+    }
+  }
+}
+
+uint64_t TexCoordOf(const Json& texture) {
+  const uint64_t set = AsIndex(Find(texture, "texCoord")).value_or(0);
+  const Json* extensions = Find(texture, "extensions");
+  const Json* transform = extensions == nullptr ? nullptr : Find(*extensions, "KHR_texture_transform");
+  return transform == nullptr ? set : AsIndex(Find(*transform, "texCoord")).value_or(set);
+}
+
+}  // namespace lacerta

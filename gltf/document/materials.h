@@ -1,0 +1,27 @@
+// What the materials of primitives show.
+#ifndef LACERTA_DOCUMENT_MATERIALS_H_
+#define LACERTA_DOCUMENT_MATERIALS_H_
+
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "document/gltf_document.h"
+#include "document/place.h"
+
+namespace lacerta {
+
+// The materials that the primitives at `places` can have: their own, and those of KHR_materials_variants.
+std::set<uint64_t> MaterialsOf(const GltfDocument& document, const std::vector<Place>& places);
+
+// Calls visit(role, texture) on every textureInfo in a material, extensions included: the objects with "index", and the keys that they stand under.
+void VisitTextures(const Json& material, const std::function<void(const std::string& role, const Json& texture)>& visit);
+
+// The set of texture coordinates that a textureInfo is shown by (KHR_texture_transform may name another one).
+uint64_t TexCoordOf(const Json& texture);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_DOCUMENT_MATERIALS_H_

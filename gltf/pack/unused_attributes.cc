@@ -1,0 +1,89 @@
+#include "pack/unused_attributes.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <set>
+
+#include "document/materials.h"
+#include "pack/source.h"
+
+namespace lacerta {
+namespace {
+
+// The n of `name`, if that is PREFIX_n.
+std::optional<uint64_t> SetOf(const std::string& name, const std::string& prefix) {
+  const bool is_set = name.size() > prefix.size() && name.size() < prefix.size() + 10 && name.compare(0, prefix.size(), prefix) == 0 &&
+                      std::all_of(name.begin() + static_cast<std::ptrdiff_t>(prefix.size()), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return is_set ? std::optional<uint64_t>(std::stoull(name.substr(prefix.size()))) : std::nullopt;
+}
+
+std::vector<const Json*> MaterialsAt(const GltfDocument& document, const std::vector<Place>& places) {
+  std::vector<const Json*> materials;
+  for (const uint64_t index : MaterialsOf(document, places)) {
+    if (const Json* material = FindElement(document.json, "materials", index); material != nullptr) materials.push_back(material);
+  }
+  return materials;
+}
+
+bool IsTextured(const GltfDocument& document, const std::vector<Place>& places, uint64_t set) {
+  bool is_textured = set == 0 && UsesExtension(document.json, "VRM");  // names textures outside of materials
+  for (const Json* material : MaterialsAt(document, places)) {
+    VisitTextures(*material, [&](const std::string&, const Json& texture) { is_textured = is_textured || TexCoordOf(texture) == set; });
+  }
+  return is_textured;
+}
+
+// normalTexture, or one of an extension's own, such as clearcoatNormalTexture.
+bool HasTangentSpace(const GltfDocument& document, const std::vector<Place>& places) {
+  bool has_one = false;
+  for (const Json* material : MaterialsAt(document, places)) {
+    const Json* extensions = Find(*material, "extensions");
+    has_one = has_one || (extensions != nullptr && Find(*extensions, "KHR_materials_anisotropy") != nullptr);
+    VisitTextures(*material, [&](const std::string& role, const Json&) { has_one = has_one || role.find("ormalTexture") != std::string::npos; });
+  }
+  return has_one;
+}
+
+bool HasSkin(const GltfDocument& document, const std::vector<Place>& places) {
+  for (uint64_t n = 0; n < ArraySize(document.json, "nodes"); ++n) {
+    const Json& node = *FindElement(document.json, "nodes", n);
+    const std::optional<uint64_t> mesh = AsIndex(Find(node, "mesh"));
+    if (Find(node, "skin") == nullptr || !mesh.has_value()) continue;
+    if (std::any_of(places.begin(), places.end(), [&](const Place& place) { return place.mesh == *mesh; })) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool IsUnused(const GltfDocument& document, const std::vector<Place>& places, const std::string& name) {
+  if (const std::optional<uint64_t> set = SetOf(name, "TEXCOORD_")) return !IsTextured(document, places, *set);
+  if (const std::optional<uint64_t> set = SetOf(name, "COLOR_")) return *set > 0;
+  if (name == "TANGENT") return !HasTangentSpace(document, places);
+  if (SetOf(name, "JOINTS_") || SetOf(name, "WEIGHTS_")) return !HasSkin(document, places);
+  return false;
+}
+
+std::string DescribeUnused(const GltfDocument& document) {
+  std::set<std::string> names;
+  size_t num_primitives = 0;
+  for (const std::vector<Place>& places : GroupByGeometry(document)) {
+    const Json& primitive = PrimitiveAt(document, places[0]);
+    const Json* attributes = Find(primitive, "attributes");
+    if (!ReasonToKeep(primitive).empty() || attributes == nullptr || !attributes->is_object()) continue;
+    bool has_one = false;
+    for (const auto& [name, reference] : attributes->items()) {
+      if (!IsUnused(document, places, name)) continue;
+      names.insert(name);
+      has_one = true;
+    }
+    num_primitives += has_one ? places.size() : 0;
+  }
+  if (names.empty()) return "";
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text + " of " + std::to_string(num_primitives) + (num_primitives == 1 ? " primitive: " : " primitives: ") + "nothing in the asset shows that";
+}
+
+}  // namespace lacerta

@@ -1,0 +1,147 @@
+#include "pack/unused_attributes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "document/place.h"
+#include "gltf/test_assets.h"
+#include "lacerta/gltf.h"
+
+namespace lacerta {
+namespace {
+
+using testing::AssetBuilder;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::WavySphere;
+
+// A document whose mesh 0 has a primitive of that material, and mesh 1 one of that and a variant.
+GltfDocument WithMaterial(const std::string& material) {
+  GltfDocument document;
+  document.json = Json::parse(R"({"nodes": [{"mesh": 0}, {"mesh": 1}], "materials": [{"name": "plain"}, )" + material + R"(], "meshes": [
+      {"primitives": [{"attributes": {"POSITION": 0}, "material": 1}]},
+      {"primitives": [{"attributes": {"POSITION": 0}, "material": 0,
+                       "extensions": {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]}]}}}]}]})");
+  return document;
+}
+
+bool IsUnused(const GltfDocument& document, uint64_t mesh, const std::string& name) { return IsUnused(document, {{mesh, 0}}, name); }
+
+TEST(UnusedAttributes, TextureCoordinatesAreUsedByTheTexturesOfTheirSet) {
+  for (const char* material :
+       {R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 1}}})", R"({"emissiveTexture": {"index": 3, "texCoord": 1}})",
+        R"({"extensions": {"KHR_materials_sheen": {"sheenColorTexture": {"index": 0, "texCoord": 1}}}})",
+        R"({"occlusionTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"texCoord": 1}}}})"}) {
+    const GltfDocument document = WithMaterial(material);
+    for (const uint64_t mesh : {0u, 1u}) {
+      EXPECT_FALSE(IsUnused(document, mesh, "TEXCOORD_1")) << material;
+      EXPECT_TRUE(IsUnused(document, mesh, "TEXCOORD_0")) << material;
+      EXPECT_TRUE(IsUnused(document, mesh, "TEXCOORD_2")) << material;
+    }
+  }
+  EXPECT_TRUE(IsUnused(WithMaterial(R"({"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}})"), 0, "TEXCOORD_0"));
+}
+
+TEST(UnusedAttributes, AnyOfThePlacesThatShareVerticesMayUseThem) {
+  GltfDocument document = WithMaterial(R"({"emissiveTexture": {"index": 0}})");
+  document.json["meshes"][1]["primitives"][0].erase("extensions");
+  EXPECT_TRUE(IsUnused(document, 1, "TEXCOORD_0"));
+  EXPECT_FALSE(IsUnused(document, {{1, 0}, {0, 0}}, "TEXCOORD_0"));
+}
+
+TEST(UnusedAttributes, TangentsAreUsedByNormalMapsAndAnisotropy) {
+  for (const char* material : {R"({"normalTexture": {"index": 0}})", R"({"extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 0.5}}})",
+                               R"({"extensions": {"KHR_materials_clearcoat": {"clearcoatNormalTexture": {"index": 1}}}})"}) {
+    EXPECT_FALSE(IsUnused(WithMaterial(material), 0, "TANGENT")) << material;
+  }
+  EXPECT_TRUE(IsUnused(WithMaterial(R"({"emissiveTexture": {"index": 0}})"), 0, "TANGENT"));
+}
+
+TEST(UnusedAttributes, WeightsAreUsedBySkins) {
+  GltfDocument document = WithMaterial("{}");
+  document.json["nodes"][1]["skin"] = 0;
+  for (const char* name : {"JOINTS_0", "WEIGHTS_1"}) {
+    EXPECT_TRUE(IsUnused(document, 0, name)) << name;
+    EXPECT_FALSE(IsUnused(document, 1, name)) << name;
+  }
+}
+
+TEST(UnusedAttributes, WhatEveryReaderShowsOrNobodyKnowsIsUsed) {
+  const GltfDocument document = WithMaterial("{}");
+  for (const char* name : {"POSITION", "NORMAL", "COLOR_0", "_FORCE", "TEXCOORD_", "TEXCOORD_x", "COLOR_99999999999999999999"}) {
+    EXPECT_FALSE(IsUnused(document, 0, name)) << name;
+  }
+  EXPECT_TRUE(IsUnused(document, 0, "COLOR_1"));
+}
+
+TEST(UnusedAttributes, AvatarsNameTexturesOutsideOfMaterials) {
+  GltfDocument document = WithMaterial("{}");
+  document.json["extensionsUsed"] = {"VRM"};
+  EXPECT_FALSE(IsUnused(document, 0, "TEXCOORD_0"));
+}
+
+// A ball with texture coordinates all over the place, whose material `texture` shows or not; a target moves it where `moves`.
+Bytes BallWithTexCoords(bool is_textured, bool moves) {
+  const TriangleMesh ball = WavySphere(24, 40);
+  std::vector<float> texcoords;
+  for (size_t v = 0; v < ball.positions.size(); ++v) {
+    const auto number = static_cast<float>(v);
+    texcoords.insert(texcoords.end(), {std::fmod(0.37f * number, 1.0f), std::fmod(0.61f * number, 1.0f)});
+  }
+  AssetBuilder builder;
+  GltfDocument& document = builder.document();
+  Json primitive = builder.Primitive(ball);
+  primitive["attributes"]["TEXCOORD_0"] = AddAccessor(MakeAccessor(MakeFloatAccessor(texcoords, 2), AccessorUse::kAttribute, false, &document), &document);
+  if (moves) {
+    const uint64_t offsets = builder.AddFloats(std::vector<Vec3f>(ball.positions.size(), {0, 0, 0.5f}), true);
+    primitive["targets"] = Json::array({{{"POSITION", offsets}, {"TEXCOORD_0", primitive["attributes"]["TEXCOORD_0"]}}});
+  }
+  builder.AddMesh("ball", Json::array({primitive}));
+  document.json["materials"][0].erase("extensions");  // any number in there may stand for an accessor, which then is kept
+  if (is_textured) document.json["materials"][0]["emissiveTexture"] = {{"index", 0}};
+  return builder.Glb();
+}
+
+PackResult Packed(const Bytes& glb, bool drop_unused) {
+  PackOptions options;
+  options.drop_unused = drop_unused;
+  options.encode.effort = Effort::kFast;
+  return PackGltf(glb, options).value();
+}
+
+Json Attributes(const Bytes& glb) { return ParseGltf(glb, "").value().json["meshes"][0]["primitives"][0]["attributes"]; }
+
+TEST(UnusedAttributes, GoWhereThatIsAskedFor) {
+  const Bytes ball = BallWithTexCoords(false, false);
+  const PackResult kept = Packed(ball, false), dropped = Packed(ball, true);
+  EXPECT_TRUE(Attributes(kept.glb).contains("TEXCOORD_0"));
+  EXPECT_FALSE(Attributes(dropped.glb).contains("TEXCOORD_0"));
+  EXPECT_LT(2 * dropped.glb.size(), kept.glb.size());
+  EXPECT_THAT(kept.report.notes, Contains(HasSubstr("TEXCOORD_0 of 1 primitive")));
+  EXPECT_THAT(dropped.report.notes, Contains(HasSubstr("dropped")));
+}
+
+TEST(UnusedAttributes, WhatTexturesShowStays) {
+  const Bytes ball = BallWithTexCoords(true, false);
+  const PackResult asked = Packed(ball, true);
+  EXPECT_EQ(asked.glb, Packed(ball, false).glb);
+  EXPECT_TRUE(Attributes(asked.glb).contains("TEXCOORD_0"));
+  EXPECT_THAT(asked.report.notes, IsEmpty());
+}
+
+TEST(UnusedAttributes, GoFromMorphTargetsToo) {
+  const Bytes dropped = Packed(BallWithTexCoords(false, true), true).glb;
+  const Json primitive = ParseGltf(dropped, "").value().json["meshes"][0]["primitives"][0];
+  EXPECT_FALSE(primitive["attributes"].contains("TEXCOORD_0"));
+  ASSERT_EQ(primitive["targets"].size(), 1u);
+  EXPECT_FALSE(primitive["targets"][0].contains("TEXCOORD_0"));
+  EXPECT_TRUE(primitive["targets"][0].contains("POSITION"));
+}
+
+}  // namespace
+}  // namespace lacerta
