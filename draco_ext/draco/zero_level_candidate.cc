@@ -1,8 +1,9 @@
 #include "draco/zero_level_candidate.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
+
+#include "remesh/edge_flips.h"
 
 namespace lacerta {
 namespace {
@@ -25,19 +26,13 @@ ZeroLevelCandidate::ZeroLevelCandidate(const FitTarget& target, TriangleMesh mes
   if (source_ == Source::kSimplified) fit_distortion_ = neighbors_ ? Distortion(model_) : target_.DistortionAt(mesh_);
 }
 
-double ZeroLevelCandidate::StepFor(double lattice_distortion) {
-  // Rounding alone errs by step / sqrt(12) along the normal; the descent leaves an eighth of its square.
-  constexpr double kSquaredStep = 12 * 8;
-  return std::sqrt(kSquaredStep * lattice_distortion);
-}
-
 void ZeroLevelCandidate::FitForRate(double lattice_distortion, int rounds) {
   if (!neighbors_) return;
-  // D ~ 4^-b in the b bits of each coordinate: the slope of D over all bits.
-  constexpr double kLn2 = 0.6931471805599453;
-  distortion_per_bit_ = 2 * kLn2 * lattice_distortion / (3 * static_cast<double>(mesh_.positions.size()));
+  const RateModel rate = RateModel::For(lattice_distortion, mesh_.positions.size());
+  distortion_per_bit_ = rate.distortion_per_bit;
   if (source_ == Source::kSimplified) {
-    FitToSurface(target_, *neighbors_, {StepFor(lattice_distortion), distortion_per_bit_}, rounds, &mesh_);
+    if (FlipEdges(target_, rate, &mesh_) > 0) neighbors_.emplace(mesh_);
+    FitToSurface(target_, *neighbors_, rate, rounds, &mesh_);
   }
   model_ = target_.ModelAt(mesh_, *neighbors_);
   if (source_ == Source::kSimplified) fit_distortion_ = Distortion(model_);

@@ -34,15 +34,12 @@ class ZeroLevelCandidate {
   double fit_distortion() const { return fit_distortion_; }
   size_t num_triangles() const { return mesh_.triangles.size(); }
 
-  // Fits the vertices again, with the samples that the target has now, and with regard to the bytes on lattices that add
+  // Turns edges and fits the vertices again, with the samples that the target has now, and with regard to the bytes on lattices that add
   // `lattice_distortion` to the squared distance.
   void FitForRate(double lattice_distortion, int rounds);
 
   // On the lattice of this step, or of the finest that Draco keeps. coding: see EncodeLatticeMesh. rounds: of descent, each after looking anew.
   StatusOr<Coding> Code(double step, int rounds, CodingEffort effort, BaseCoding coding = BaseCoding::kStock) const;
-
-  // The step that adds about `lattice_distortion`.
-  static double StepFor(double lattice_distortion);
 
  private:
   LatticeMesh FitLattice(double step, int rounds, double* distortion) const;

@@ -12,6 +12,7 @@
 #include "draco/zero_level.h"
 #include "draco/zero_level_candidate.h"
 #include "remesh/fitted_simplify.h"
+#include "remesh/mesh_fit.h"
 #include "remesh/simplify.h"
 
 namespace lacerta {
@@ -200,11 +201,11 @@ class ZeroLevelSearch {
     constexpr double kMostOfFit = 0.93, kFarOff = 1e9;
     if (candidate.fit_distortion() > kMostOfFit * distortion_) {
       trial->score = kFarOff * (candidate.fit_distortion() / distortion_);
-      trial->step = candidate.StepFor((1 - kMostOfFit) * distortion_);
+      trial->step = RateModel::StepFor((1 - kMostOfFit) * distortion_);
       return Status();
     }
     candidate.FitForRate(distortion_ - candidate.fit_distortion(), 1);
-    double step = candidate.StepFor(std::max(distortion_ - candidate.fit_distortion(), (1 - kMostOfFit) * distortion_));
+    double step = RateModel::StepFor(std::max(distortion_ - candidate.fit_distortion(), (1 - kMostOfFit) * distortion_));
     constexpr int kSteps = 3;
     double db = 0;
     for (int i = 0; i < kSteps; ++i) {
@@ -242,7 +243,7 @@ class ZeroLevelSearch {
     ZeroLevelCandidate& candidate = *at_size;
     const double fit = std::max(candidate.fit_distortion(), 1e-14 * Square(meter_.diagonal()));
     candidate.FitForRate(fit, 1);
-    double step = candidate.StepFor(fit);
+    double step = RateModel::StepFor(fit);
     constexpr int kSteps = 5;
     for (int i = 0; i < kSteps; ++i) {
       LACERTA_ASSIGN_OR_RETURN(const ZeroLevelCandidate::Coding coding, candidate.Code(step, 1, CodingEffort::kQuick, target_.base_coding));

@@ -177,6 +177,22 @@ double FitTarget::DistortionAt(const TriangleMesh& mesh) const {
   return std::max(MeanSquare(Forward(mesh, tree)), MeanSquare(Backward(mesh, own)));
 }
 
+std::vector<FitTarget::Hit> FitTarget::HitsOn(const TriangleMesh& mesh) const {
+  const std::vector<FitResidual> residuals = Forward(mesh, TriangleTree(mesh));
+  std::vector<Hit> hits;
+  hits.reserve(samples_.size());
+  for (size_t i = 0; i < samples_.size(); ++i) {
+    hits.push_back({samples_[i].position, samples_[i].share, residuals[i].face, residuals[i].residual * residuals[i].residual});
+  }
+  return hits;
+}
+
+double FitTarget::SquaredDistance(const Vec3f& point, uint32_t* hint) const {
+  const ClosestPointResult closest = tree_.ClosestPointNear(point, *hint);
+  *hint = closest.point.face;
+  return static_cast<double>(closest.squared_distance);
+}
+
 std::vector<FitResidual> FitTarget::Forward(const TriangleMesh& mesh, const TriangleTree& tree) const {
   std::vector<FitResidual> result(samples_.size());
   ForBlocks(samples_.size(), [&](size_t first, size_t last) {

@@ -61,6 +61,18 @@ class FitTarget {
   // times cheaper, and no neighbors are needed.
   double DistortionAt(const TriangleMesh& mesh) const;
 
+  // A sample of the input and the face of a mesh that it is closest to; SurfacePoint::kNone where the mesh has no area.
+  struct Hit {
+    Vec3f position;
+    double share = 0;  // of the area
+    uint32_t face = SurfacePoint::kNone;
+    double squared_distance = 0;
+  };
+  std::vector<Hit> HitsOn(const TriangleMesh& mesh) const;
+
+  // Of a point to the input. hint: a face of the input that may be near, or SurfacePoint::kNone; becomes the one that is.
+  double SquaredDistance(const Vec3f& point, uint32_t* hint) const;
+
   double diagonal() const { return diagonal_; }
   const TriangleMesh& mesh() const { return mesh_; }
 

@@ -18,6 +18,10 @@ struct RateModel {
   double step = 0;                // of the lattice, model units
   double distortion_per_bit = 0;  // squared model units of DistanceModel's E for a bit; 0: bits do not matter
 
+  // Of a mesh that is off by that much more, squared model units, once it is on its lattice.
+  static RateModel For(double lattice_distortion, size_t num_vertices);
+  static double StepFor(double lattice_distortion);  // of that lattice
+
   // Of all vertices of a mesh with the given flaps: bits of one flap with the squared error r2.
   double BitsOfFlap(double r2) const;
   // Slope of that over r2.

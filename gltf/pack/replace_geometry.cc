@@ -21,7 +21,7 @@ void Require(const char* extension, bool is_needed, GltfDocument* document) {
 }
 
 // Whether an accessor among those of attributes by name is of a type that the attribute has by KHR_mesh_quantization alone.
-bool AreQuantized(const Json* references, const GltfDocument& document) {
+bool NeedQuantization(const Json* references, const GltfDocument& document) {
   if (references == nullptr || !references->is_object()) return false;
   for (const auto& [name, index] : references->items()) {
     const std::optional<uint64_t> number = AsIndex(&index);
@@ -156,9 +156,9 @@ void DeclareQuantization(GltfDocument* document) {
   bool is_needed = false;
   for (const Place& place : AllPlaces(*document)) {
     const Json& primitive = PrimitiveAt(*document, place);
-    is_needed = is_needed || AreQuantized(Find(primitive, "attributes"), *document);
+    is_needed = is_needed || NeedQuantization(Find(primitive, "attributes"), *document);
     for (uint64_t t = 0; t < ArraySize(primitive, "targets"); ++t) {
-      is_needed = is_needed || AreQuantized(FindElement(primitive, "targets", t), *document);
+      is_needed = is_needed || NeedQuantization(FindElement(primitive, "targets", t), *document);
     }
   }
   Require("KHR_mesh_quantization", is_needed, document);

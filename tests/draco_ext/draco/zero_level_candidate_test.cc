@@ -39,7 +39,7 @@ TEST_F(ZeroLevelCandidateTest, KnowsWhatACodingIs) {
   const double added = candidate.fit_distortion();
   candidate.FitForRate(added, 1);
   for (const CodingEffort effort : {CodingEffort::kQuick, CodingEffort::kFull}) {
-    const ZeroLevelCandidate::Coding coding = candidate.Code(ZeroLevelCandidate::StepFor(added), 2, effort).value();
+    const ZeroLevelCandidate::Coding coding = candidate.Code(RateModel::StepFor(added), 2, effort).value();
     EXPECT_EQ(coding.bytes, coding.coded.stream.size());
     EXPECT_EQ(coding.coded.mesh.triangles.size(), candidate.num_triangles());
     const double measured = SquaredDistance(coding.coded.mesh);
@@ -50,7 +50,7 @@ TEST_F(ZeroLevelCandidateTest, KnowsWhatACodingIs) {
 
 TEST_F(ZeroLevelCandidateTest, FinerStepsAreCloserAndLarger) {
   ZeroLevelCandidate candidate(target_, SimplificationSequence(mesh_).MeshWith(500), Source::kSimplified);
-  const double step = ZeroLevelCandidate::StepFor(candidate.fit_distortion());
+  const double step = RateModel::StepFor(candidate.fit_distortion());
   double last_distortion = 1;
   size_t last_bytes = 0;
   for (const double factor : {4.0, 2.0, 1.0, 0.5}) {
