@@ -151,6 +151,13 @@ def markdown_table(header, rows):
     return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
+def read_csv(path, texts):
+    """The rows of a table that write_csv wrote; columns named in `texts` are strings, others numbers, truth values or none. No file, no rows."""
+    rows = csv.DictReader(path.open(encoding="utf-8")) if path.exists() else []
+    value = {"": None, "True": True, "False": False}
+    return [{k: v if k in texts else value[v] if v in value else json.loads(v) for k, v in row.items()} for row in rows]
+
+
 def write_csv(path, rows):
     path.parent.mkdir(parents=True, exist_ok=True)
     with open(path, "w", newline="") as file:
