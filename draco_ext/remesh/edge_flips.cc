@@ -95,7 +95,7 @@ class FlipMeter {
     constexpr double kTwoSides = 2;       // a bit's worth is told in their mean
     const std::array<Triangle, 2> old{mesh_.triangles[edge.faces[0]], mesh_.triangles[edge.faces[1]]}, flipped = edge.Flipped();
     if (LookAway(old, flipped)) return 0;
-    const double worth_of_bits = kTwoSides * rate_.distortion_per_bit * BitsSaved(edge);
+    const double worth_of_bits = rate_.distortion_per_bit > 0 ? kTwoSides * rate_.distortion_per_bit * BitsSaved(edge) : 0;
     const auto [forward, flipped_forward] = ForwardOf(edge, flipped);
     uint32_t hint = kNone;
     const double before = forward + Backward(old, &hint);

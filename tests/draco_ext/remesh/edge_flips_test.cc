@@ -105,6 +105,17 @@ TEST(EdgeFlipsTest, SimplifiedMeshesTakeFewerBitsForLittleDistanceAndStayClosed)
   }
 }
 
+TEST(EdgeFlipsTest, SimplifiedMeshesComeNearerWhereBitsDoNotMatter) {
+  for (const TriangleMesh& input : {shapes::BumpySphere(5, 0.2f), shapes::Torus(80, 40, 1.0f, 0.4f)}) {
+    TriangleMesh mesh = SimplificationSequence(input).MeshWith(600);
+    const TriangleMesh before = mesh;
+    EXPECT_GT(Flip(input, RateModel(), &mesh), 5u);
+    const double gain = 20 * std::log10(Distance(input, before) / Distance(input, mesh));
+    EXPECT_GT(gain, 0.02);
+    EXPECT_LT(gain, 2);
+  }
+}
+
 TEST(EdgeFlipsTest, IsTheSameOnAnyNumberOfThreads) {
   const TriangleMesh input = shapes::BumpySphere(4, 0.2f), simplified = SimplificationSequence(input).MeshWith(300);
   const RateModel rate = UsualRate(input, simplified);
