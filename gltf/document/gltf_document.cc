@@ -55,8 +55,7 @@ StatusOr<Chunks> SplitGlb(Span<const uint8_t> bytes) {
 
 // Whether buffer `index` holds refinements alone: the asset is whole without them.
 bool IsDispensable(const Json& json, uint64_t index) {
-  const Json* extensions = Find(json, "extensions");
-  const Json* progressive = extensions == nullptr ? nullptr : Find(*extensions, "LACERTA_mesh_progressive");
+  const Json* progressive = FindExtension(json, "LACERTA_mesh_progressive");
   const std::optional<uint64_t> refinements =
       progressive == nullptr ? std::nullopt : AsIndex(Find(*progressive, "refinements"));
   if (!refinements.has_value()) return false;

@@ -76,6 +76,11 @@ const Json* Find(const Json& object, const char* key) {
 
 Json* Find(Json& object, const char* key) { return const_cast<Json*>(Find(static_cast<const Json&>(object), key)); }
 
+const Json* FindExtension(const Json& object, const char* name) {
+  const Json* extensions = Find(object, "extensions");
+  return extensions == nullptr ? nullptr : Find(*extensions, name);
+}
+
 const Json* FindElement(const Json& object, const char* key, uint64_t index) {
   const Json* array = Find(object, key);
   return array != nullptr && array->is_array() && index < array->size() ? &(*array)[static_cast<size_t>(index)]

@@ -22,6 +22,9 @@ StatusOr<Json> ParseJson(std::string_view text);
 const Json* Find(const Json& object, const char* key);
 Json* Find(Json& object, const char* key);
 
+// An extension of the asset or of an object in it: `object["extensions"][name]`, or nullptr.
+const Json* FindExtension(const Json& object, const char* name);
+
 // The element of the array `object[key]`, or nullptr when out of range.
 const Json* FindElement(const Json& object, const char* key, uint64_t index);
 

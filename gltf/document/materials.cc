@@ -1,25 +1,30 @@
 #include "document/materials.h"
 
 #include <optional>
+#include <set>
 
 namespace lacerta {
 namespace {
 
-void AddMaterial(const Json& object, std::set<uint64_t>* materials) {
-  if (const std::optional<uint64_t> material = AsIndex(Find(object, "material"))) materials->insert(*material);
+void AddMaterial(const Json& object, std::set<uint64_t>* indices) {
+  if (const std::optional<uint64_t> index = AsIndex(Find(object, "material"))) indices->insert(*index);
 }
 
 }  // namespace
 
-std::set<uint64_t> MaterialsOf(const GltfDocument& document, const std::vector<Place>& places) {
-  std::set<uint64_t> materials;
+std::vector<const Json*> MaterialsOf(const GltfDocument& document, const std::vector<Place>& places) {
+  std::set<uint64_t> indices;
   for (const Place& place : places) {
     const Json& primitive = PrimitiveAt(document, place);
-    AddMaterial(primitive, &materials);
-    const Json* variants = PrimitiveExtension(primitive, "KHR_materials_variants");
+    AddMaterial(primitive, &indices);
+    const Json* variants = FindExtension(primitive, "KHR_materials_variants");
     for (uint64_t i = 0; variants != nullptr && i < ArraySize(*variants, "mappings"); ++i) {
-      AddMaterial(*FindElement(*variants, "mappings", i), &materials);
+      AddMaterial(*FindElement(*variants, "mappings", i), &indices);
     }
+  }
+  std::vector<const Json*> materials;
+  for (const uint64_t index : indices) {
+    if (const Json* material = FindElement(document.json, "materials", index); material != nullptr) materials.push_back(material);
   }
   return materials;
 }
@@ -37,8 +42,7 @@ void VisitTextures(const Json& material, const std::function<void(const std::str
 
 uint64_t TexCoordOf(const Json& texture) {
   const uint64_t set = AsIndex(Find(texture, "texCoord")).value_or(0);
-  const Json* extensions = Find(texture, "extensions");
-  const Json* transform = extensions == nullptr ? nullptr : Find(*extensions, "KHR_texture_transform");
+  const Json* transform = FindExtension(texture, "KHR_texture_transform");
   return transform == nullptr ? set : AsIndex(Find(*transform, "texCoord")).value_or(set);
 }
 

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -13,8 +12,8 @@
 
 namespace lacerta {
 
-// The materials that the primitives at `places` can have: their own, and those of KHR_materials_variants.
-std::set<uint64_t> MaterialsOf(const GltfDocument& document, const std::vector<Place>& places);
+// The materials that the primitives at `places` can have: their own, and those of KHR_materials_variants; each once.
+std::vector<const Json*> MaterialsOf(const GltfDocument& document, const std::vector<Place>& places);
 
 // Calls visit(role, texture) on every textureInfo in a material, extensions included: the objects with "index", and the keys that they stand under.
 void VisitTextures(const Json& material, const std::function<void(const std::string& role, const Json& texture)>& visit);

@@ -27,8 +27,7 @@ std::vector<Turn> TurnsOfViews(const Json& json) {
     if (view.has_value() && *view < turns.size()) turns[static_cast<size_t>(*view)] = turn;
   };
   for (uint64_t i = 0; i < ArraySize(json, "images"); ++i) set(FindElement(json, "images", i), "bufferView", Turn::kImage);
-  const Json* extensions = Find(json, "extensions");
-  set(extensions == nullptr ? nullptr : Find(*extensions, "LACERTA_mesh_progressive"), "data", Turn::kStreams);
+  set(FindExtension(json, "LACERTA_mesh_progressive"), "data", Turn::kStreams);
   return turns;
 }
 

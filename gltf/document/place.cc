@@ -59,9 +59,4 @@ std::vector<std::vector<Place>> GroupByGeometry(const GltfDocument& document) {
   return groups;
 }
 
-const Json* PrimitiveExtension(const Json& primitive, const char* name) {
-  const Json* extensions = Find(primitive, "extensions");
-  return extensions == nullptr ? nullptr : Find(*extensions, name);
-}
-
 }  // namespace lacerta

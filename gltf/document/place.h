@@ -28,9 +28,6 @@ std::vector<Place> AllPlaces(const GltfDocument& document);
 // All primitives, those with the same vertices and indices together.
 std::vector<std::vector<Place>> GroupByGeometry(const GltfDocument& document);
 
-// An extension of a primitive, or nullptr.
-const Json* PrimitiveExtension(const Json& primitive, const char* name);
-
 }  // namespace lacerta
 
 #endif  // LACERTA_DOCUMENT_PLACE_H_

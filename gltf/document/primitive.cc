@@ -145,8 +145,7 @@ std::vector<const Primitive*> PointersTo(const std::vector<Primitive>& primitive
 StatusOr<Primitive> ReadUncheckedPrimitive(const GltfDocument& document, const Json& primitive, const DecodeLimits& limits) {
   LACERTA_ASSIGN_OR_RETURN(const uint64_t mode, GetIndex(primitive, "mode", kTriangles));
   if (mode < kTriangles || mode > kTriangleFan) return Unsupported("holds points or lines, no triangles");
-  const Json* extensions = Find(primitive, "extensions");
-  const Json* draco = extensions == nullptr ? nullptr : Find(*extensions, "KHR_draco_mesh_compression");
+  const Json* draco = FindExtension(primitive, "KHR_draco_mesh_compression");
   StatusOr<Primitive> result =
       draco != nullptr ? ReadDraco(document, primitive, *draco, limits) : ReadPlain(document, primitive, mode);
   if (!result.ok()) return result.status();

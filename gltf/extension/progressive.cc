@@ -186,8 +186,7 @@ Json ShortNumbers(const Vec3f& v) { return {ShortNumber(v.x), ShortNumber(v.y), 
 }  // namespace
 
 StatusOr<Progressive> ParseProgressive(const GltfDocument& document) {
-  const Json* extensions = Find(document.json, "extensions");
-  const Json* extension = extensions == nullptr ? nullptr : Find(*extensions, kProgressiveName);
+  const Json* extension = FindExtension(document.json, kProgressiveName);
   if (extension == nullptr) return NotFound(std::string("the asset has no ") + kProgressiveName);
   StatusOr<Progressive> progressive = ParseUnnamed(*extension);
   if (!progressive.ok()) return progressive.status().WithContext(kProgressiveName);

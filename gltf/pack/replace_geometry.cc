@@ -143,7 +143,7 @@ void ReplaceGeometry(const std::vector<Place>& geometries, const std::vector<Pla
 std::set<uint64_t> DracoViews(const GltfDocument& document) {
   std::set<uint64_t> views;
   for (const Place& place : AllPlaces(document)) {
-    const Json* draco = PrimitiveExtension(PrimitiveAt(document, place), kDracoName);
+    const Json* draco = FindExtension(PrimitiveAt(document, place), kDracoName);
     if (draco == nullptr) continue;
     if (const std::optional<uint64_t> view = AsIndex(Find(*draco, "bufferView")); view.has_value()) views.insert(*view);
   }

@@ -35,7 +35,7 @@ uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primi
       sum += SizeOf(document, Find(references, attribute.name.c_str()), attribute.data, StoredSize(attribute.data));
     }
   }
-  if (const Json* draco = PrimitiveExtension(json, kDracoName); draco != nullptr) {
+  if (const Json* draco = FindExtension(json, kDracoName); draco != nullptr) {
     const StatusOr<Span<const uint8_t>> bytes =
         BufferViewBytes(document, AsIndex(Find(*draco, "bufferView")).value_or(0));
     return sum + (bytes.ok() ? bytes.value().size() : 0);

@@ -13,8 +13,7 @@ namespace {
 double LargestScale(const Json& material, uint64_t set) {
   double largest = 1.0;
   VisitTextures(material, [&](const std::string&, const Json& texture) {
-    const Json* extensions = Find(texture, "extensions");
-    const Json* transform = extensions == nullptr ? nullptr : Find(*extensions, "KHR_texture_transform");
+    const Json* transform = FindExtension(texture, "KHR_texture_transform");
     if (transform == nullptr || TexCoordOf(texture) != set) return;
     for (uint64_t axis = 0; axis < 2; ++axis) {
       largest = std::max(largest, std::abs(AsNumber(FindElement(*transform, "scale", axis)).value_or(1.0)));
@@ -33,10 +32,7 @@ uint64_t TexelSide(const GltfDocument& document) {
 double TexelsPerUnit(const GltfDocument& document, const std::vector<Place>& places, uint64_t set, uint64_t side) {
   constexpr double kMostRepeats = 1e4;  // an absurd transform shall not ask for absurd bits
   double scale = 1.0;
-  for (const uint64_t material : MaterialsOf(document, places)) {
-    const Json* json = FindElement(document.json, "materials", material);
-    if (json != nullptr) scale = std::max(scale, LargestScale(*json, set));
-  }
+  for (const Json* material : MaterialsOf(document, places)) scale = std::max(scale, LargestScale(*material, set));
   return std::min(scale, kMostRepeats) * static_cast<double>(side);
 }
 

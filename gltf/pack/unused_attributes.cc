@@ -18,17 +18,9 @@ std::optional<uint64_t> SetOf(const std::string& name, const std::string& prefix
   return is_set ? std::optional<uint64_t>(std::stoull(name.substr(prefix.size()))) : std::nullopt;
 }
 
-std::vector<const Json*> MaterialsAt(const GltfDocument& document, const std::vector<Place>& places) {
-  std::vector<const Json*> materials;
-  for (const uint64_t index : MaterialsOf(document, places)) {
-    if (const Json* material = FindElement(document.json, "materials", index); material != nullptr) materials.push_back(material);
-  }
-  return materials;
-}
-
 bool IsTextured(const GltfDocument& document, const std::vector<Place>& places, uint64_t set) {
   bool is_textured = set == 0 && UsesExtension(document.json, "VRM");  // names textures outside of materials
-  for (const Json* material : MaterialsAt(document, places)) {
+  for (const Json* material : MaterialsOf(document, places)) {
     VisitTextures(*material, [&](const std::string&, const Json& texture) { is_textured = is_textured || TexCoordOf(texture) == set; });
   }
   return is_textured;
@@ -37,9 +29,8 @@ bool IsTextured(const GltfDocument& document, const std::vector<Place>& places, 
 // normalTexture, or one of an extension's own, such as clearcoatNormalTexture.
 bool HasTangentSpace(const GltfDocument& document, const std::vector<Place>& places) {
   bool has_one = false;
-  for (const Json* material : MaterialsAt(document, places)) {
-    const Json* extensions = Find(*material, "extensions");
-    has_one = has_one || (extensions != nullptr && Find(*extensions, "KHR_materials_anisotropy") != nullptr);
+  for (const Json* material : MaterialsOf(document, places)) {
+    has_one = has_one || FindExtension(*material, "KHR_materials_anisotropy") != nullptr;
     VisitTextures(*material, [&](const std::string& role, const Json&) { has_one = has_one || role.find("ormalTexture") != std::string::npos; });
   }
   return has_one;

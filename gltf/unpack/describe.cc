@@ -12,7 +12,7 @@ namespace lacerta {
 namespace {
 
 Fallback FallbackOf(const GltfDocument& document, const Json& primitive) {
-  if (PrimitiveExtension(primitive, kDracoName) != nullptr) return Fallback::kDraco;
+  if (FindExtension(primitive, kDracoName) != nullptr) return Fallback::kDraco;
   const Json* attributes = Find(primitive, "attributes");
   const std::optional<uint64_t> position =
       attributes == nullptr ? std::nullopt : AsIndex(Find(*attributes, "POSITION"));
@@ -63,8 +63,8 @@ PrimitiveInfo DescribePrimitive(const GltfDocument& document, const Place& place
   const uint64_t corners = indices != nullptr ? count_of(indices) : info.vertices;
   if (mode == 4) info.triangles = corners / 3;
   if (mode > 4 && corners > 2) info.triangles = corners - 2;
-  const Json* draco = PrimitiveExtension(primitive, kDracoName);
-  if (PrimitiveExtension(primitive, kProgressiveName) != nullptr) {
+  const Json* draco = FindExtension(primitive, kDracoName);
+  if (FindExtension(primitive, kProgressiveName) != nullptr) {
     info.storage = PrimitiveStorage::kProgressive;
   } else if (draco != nullptr) {
     info.storage = PrimitiveStorage::kDraco;
@@ -97,9 +97,9 @@ StatusOr<AssetInfo> DescribeGltf(Span<const uint8_t> asset, const std::string& f
     const Json& primitive = PrimitiveAt(document, place);
     ++info.num_primitives;
     info.primitives.push_back(DescribePrimitive(document, place));
-    const Json* extension = PrimitiveExtension(primitive, kProgressiveName);
+    const Json* extension = FindExtension(primitive, kProgressiveName);
     if (extension == nullptr) {
-      if (PrimitiveExtension(primitive, kDracoName) != nullptr) ++info.num_draco_primitives;
+      if (FindExtension(primitive, kDracoName) != nullptr) ++info.num_draco_primitives;
       continue;
     }
     if (!progressive.ok()) return progressive.status();

@@ -22,7 +22,7 @@ StatusOr<TriangleMesh> ReadMesh(const GltfDocument& document, const StatusOr<Pro
     const Place place = {mesh, p};
     const Json& primitive = PrimitiveAt(document, place);
     TriangleMesh part;
-    if (PrimitiveExtension(primitive, kProgressiveName) != nullptr) {
+    if (FindExtension(primitive, kProgressiveName) != nullptr) {
       StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, place, options, cache);
       if (!surface.ok()) return surface.status().WithContext(PlaceName(document, place));
       if (!surface.value().note.empty()) notes->push_back(PlaceName(document, place) + ": " + surface.value().note);

@@ -63,7 +63,7 @@ StatusOr<std::vector<RefinedGeometry>> RefineParsedGltf(const std::string& json,
   std::vector<RefinedGeometry> geometries;
   AttributedCache cache;
   for (const std::vector<Place>& places : GroupByGeometry(document)) {
-    if (PrimitiveExtension(PrimitiveAt(document, places[0]), kProgressiveName) == nullptr) continue;
+    if (FindExtension(PrimitiveAt(document, places[0]), kProgressiveName) == nullptr) continue;
     StatusOr<ProgressiveSurface> surface = ReadRefinedSurface(document, progressive, places[0], options, &cache);
     if (!surface.ok()) return surface.status().WithContext(PlaceName(document, places[0]));
     geometries.push_back(ToArrays(std::move(surface).value()));

@@ -35,7 +35,7 @@ Status CheckFallback(const GltfDocument& document, const Json& primitive, Span<c
   const Status edited =
       InvalidData("the fallback geometry is no longer the base of the stream; a tool that does not know " +
                   std::string(kProgressiveName) + " edited the asset");
-  if (const Json* draco = PrimitiveExtension(primitive, kDracoName); draco != nullptr) {
+  if (const Json* draco = FindExtension(primitive, kDracoName); draco != nullptr) {
     LACERTA_ASSIGN_OR_RETURN(const uint64_t view, GetIndex(*draco, "bufferView"));
     LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, BufferViewBytes(document, view));
     if (bytes.size() != base_bytes.size() || std::memcmp(bytes.data(), base_bytes.data(), bytes.size()) != 0)
@@ -54,7 +54,7 @@ Status CheckFallback(const GltfDocument& document, const Json& primitive, Span<c
 }
 
 bool HasFallback(const GltfDocument& document, const Json& primitive) {
-  if (PrimitiveExtension(primitive, kDracoName) != nullptr) return true;
+  if (FindExtension(primitive, kDracoName) != nullptr) return true;
   const Json* attributes = Find(primitive, "attributes");
   const std::optional<uint64_t> index = attributes == nullptr ? std::nullopt : AsIndex(Find(*attributes, "POSITION"));
   return index.has_value() && !ViewsOfAccessor(document, *index).empty();
@@ -118,7 +118,7 @@ StatusOr<ProgressiveSurface> ReadGroup(const GltfDocument& document, const Gathe
 StatusOr<ProgressiveSurface> ReadStream(const GltfDocument& document, const StatusOr<Progressive>& progressive,
                                         const Json& primitive, const UnpackOptions& options, AttributedCache* cache) {
   if (!progressive.ok()) return progressive.status();
-  const Json& extension = *PrimitiveExtension(primitive, kProgressiveName);
+  const Json& extension = *FindExtension(primitive, kProgressiveName);
   LACERTA_ASSIGN_OR_RETURN(const uint64_t index, GetIndex(extension, "stream"));
   LACERTA_ASSIGN_OR_RETURN(const uint64_t group, GetIndex(extension, "group", 0));
   if (index >= progressive.value().streams.size())

@@ -130,7 +130,7 @@ StatusOr<std::vector<ProgressiveSurface>> ReadProgressive(Span<const uint8_t> as
   std::vector<ProgressiveSurface> surfaces;
   AttributedCache cache;
   for (const Place& place : AllPlaces(document)) {
-    if (PrimitiveExtension(PrimitiveAt(document, place), kProgressiveName) == nullptr) continue;
+    if (FindExtension(PrimitiveAt(document, place), kProgressiveName) == nullptr) continue;
     StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, place, options, &cache);
     if (!surface.ok()) return surface.status().WithContext(PlaceName(document, place));
     surfaces.push_back(std::move(surface).value());
@@ -157,7 +157,7 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
   for (const std::vector<Place>& places : groups) {
     const Json primitive = PrimitiveAt(document, places[0]);
     Status status;
-    if (PrimitiveExtension(primitive, kProgressiveName) != nullptr) {
+    if (FindExtension(primitive, kProgressiveName) != nullptr) {
       StatusOr<ProgressiveSurface> surface = ReadSurface(document, progressive, places[0], options, &cache);
       if (!surface.ok()) return surface.status().WithContext(PlaceName(document, places[0]));
       if (!surface.value().note.empty())
@@ -167,7 +167,7 @@ StatusOr<UnpackResult> UnpackGltf(Span<const uint8_t> asset, const UnpackOptions
       NewGeometry geometry = PlainGeometry(plain, &document);
       geometry.targets = TargetAccessors(ToTargets(surface.value()), &document);
       ReplaceGeometry({places[0]}, places, std::move(geometry), &pool, &document);
-    } else if (PrimitiveExtension(primitive, kDracoName) != nullptr) {
+    } else if (FindExtension(primitive, kDracoName) != nullptr) {
       StatusOr<NewGeometry> geometry = FromDraco(primitive, options.limits, &document);
       if (!geometry.ok()) return geometry.status().WithContext(PlaceName(document, places[0]));
       ReplaceGeometry({places[0]}, places, std::move(geometry).value(), &pool, &document);

@@ -63,7 +63,7 @@ class Validator {
   void CheckPrimitives() {
     for (const std::vector<Place>& places : GroupByGeometry(document_)) {
       const Place place = places[0];
-      if (PrimitiveExtension(PrimitiveAt(document_, place), kProgressiveName) != nullptr) {
+      if (FindExtension(PrimitiveAt(document_, place), kProgressiveName) != nullptr) {
         CheckProgressive(place);
       } else {
         CheckPlain(place);
@@ -101,7 +101,7 @@ class Validator {
     const std::string where = PlaceName(document_, place);
     const Json& primitive = PrimitiveAt(document_, place);
     if (AsIndex(Find(primitive, "mode")).value_or(4) != 4) Error(where, "a progressive primitive is not of triangles");
-    if (PrimitiveExtension(primitive, kDracoName) != nullptr && !UsesExtension(document_.json, kDracoName)) {
+    if (FindExtension(primitive, kDracoName) != nullptr && !UsesExtension(document_.json, kDracoName)) {
       Error(where, std::string(kDracoName) + " is not listed in extensionsUsed");
     }
     int num_levels = 0;
@@ -118,7 +118,7 @@ class Validator {
         const bool trimmed = !IsComplete(primitive);
         return trimmed ? Note(where, surface.value().note) : Error(where, surface.value().note);
       }
-      const uint64_t stream = *AsIndex(Find(*PrimitiveExtension(primitive, kProgressiveName), "stream"));
+      const uint64_t stream = *AsIndex(Find(*FindExtension(primitive, kProgressiveName), "stream"));
       const ProgressiveStream& announced = progressive_.value().streams[static_cast<size_t>(stream)];
       // What several groups are off together says nothing about one of them.
       const bool is_alone = announced.base_lengths.size() <= 1;
@@ -128,7 +128,7 @@ class Validator {
   }
 
   bool IsComplete(const Json& primitive) const {
-    const uint64_t stream = *AsIndex(Find(*PrimitiveExtension(primitive, kProgressiveName), "stream"));
+    const uint64_t stream = *AsIndex(Find(*FindExtension(primitive, kProgressiveName), "stream"));
     const StatusOr<GatheredStream> gathered = GatherStream(document_, progressive_.value(), stream);
     return gathered.ok() && gathered.value().complete;
   }

@@ -89,7 +89,7 @@ TEST(Morphs, UnpackingLeavesTargetsWithoutDataAlone) {
   ASSERT_TRUE(unpacked.ok()) << unpacked.status().message();
   const GltfDocument after = ParseGltf(unpacked.value().glb, "").value();
   const Json& primitive = PrimitiveAt(after, {0, 0});
-  EXPECT_EQ(PrimitiveExtension(primitive, "KHR_draco_mesh_compression"), nullptr);
+  EXPECT_EQ(FindExtension(primitive, "KHR_draco_mesh_compression"), nullptr);
   EXPECT_FALSE(after.json["accessors"][primitive["targets"][0]["POSITION"].get<size_t>()].contains("bufferView"));
 }
 
