@@ -194,15 +194,15 @@ StatusOr<ChosenStream> CodeRemeshed(ProxiedInput* input, const SurfaceDistanceMe
   *report = {parts.refined_components,       parts.still_components, still.hidden_components,
              parts.report.flipped_triangles, parts.report.cut_edges, parts.report.split_vertices,
              mended ? mended->closed_tears : 0, mended ? mended->stray_components : 0};
-  const auto is_outdone = [&](double bytes) {
-    if (!*simpler) return false;
-    const StatusOr<bool> takes_fewer = (*simpler)->TakesFewerThan(bytes);
-    *is_simpler = takes_fewer.ok() && takes_fewer.value();
-    return *is_simpler;
-  };
+  const RivalStream rival = {[&](double bytes) {
+                               const StatusOr<bool> takes_fewer = (*simpler)->TakesFewerThan(bytes);
+                               *is_simpler = takes_fewer.ok() && takes_fewer.value();
+                               return *is_simpler;
+                             },
+                             [&](double bytes) { (*simpler)->PrepareBeside(bytes); }};
   std::vector<RefinableSurface> simplifications;
   for (const CollapseHistory& history : histories) simplifications.push_back({surface, history, still.mesh});
-  return CodeAtTarget(simplifications, meter, target, options.mode, options.progress, effort, is_outdone);
+  return CodeAtTarget(simplifications, meter, target, options.mode, options.progress, effort, *simpler ? &rival : nullptr);
 }
 
 // The surface at the target on its own connectivity, remeshed, or as a simplified mesh without levels, whichever is better. crowding: of

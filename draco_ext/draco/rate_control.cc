@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -57,6 +58,14 @@ constexpr double kLeastShare = 0.45, kLeastShareAtEnd = 0.85, kFewestBytesPerVer
 // What a PSNR costs, about: ln(bytes) per dB.
 constexpr double kLogBytesPerDecibel = 0.11;
 
+// The most promising bases, best first; at least one.
+struct BestBases {
+  std::vector<BaseChoice> choices;
+  double bytes;  // of the stream over the first, about; infinite where no base reaches the target
+};
+
+Status Outdone() { return Unsupported("a stream without levels is much smaller"); }
+
 class Ladder {
  public:
   Ladder(const std::vector<RefinableSurface>& simplifications, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
@@ -69,12 +78,11 @@ class Ladder {
   }
 
   // Scores the rungs around the usual one and goes on until one on either side of the best is known to be much worse, or two to be
-  // worse: one alone may be a fluke of its simplification. Other simplifications are looked at where the best one is. Returns the most promising
-  // bases, best first; at least one.
-  StatusOr<std::vector<BaseChoice>> FindBest(const std::function<void(double, const char*)>& progress, const std::function<bool(double)>& is_outdone) {
+  // worse: one alone may be a fluke of its simplification. Other simplifications are looked at where the best one is. Fails where it is outdone
+  // on the way.
+  StatusOr<BestBases> FindBest(const std::function<void(double, const char*)>& progress, const std::function<bool(double)>& is_outdone) {
     const int first = UsualRung();
-    const Status outdone = Unsupported("a stream without levels is much smaller");
-    if (is_outdone(LeastBytesFrom(std::max(first - kStride, first_.front())))) return outdone;
+    if (is_outdone(LeastBytesFrom(std::max(first - kStride, first_.front())))) return Outdone();
     Visit(effort_.enough_bases == 1 ? std::vector<BaseChoice>{{0, first}} : std::vector<BaseChoice>{{0, first - kStride}, {0, first}, {0, first + kStride}}, {});
     for (;;) {
       if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(tried_.size())), "choosing the base mesh");
@@ -85,14 +93,12 @@ class Ladder {
       std::vector<BaseChoice> likely;
       const std::vector<BaseChoice> next = NextChoices(best, &likely);
       const bool is_enough = next.empty() || (tried_.size() >= effort_.enough_bases && is_scored);
-      const double least_share = is_enough ? kLeastShareAtEnd : kLeastShare;
-      // Where no base reaches the target any stream without levels that does outdoes them all.
-      const double without_score = is_enough ? std::numeric_limits<double>::infinity() : LeastBytesFrom(HighestRung() + kStride);
-      if (is_outdone(is_scored ? least_share * std::exp(tried_[best].score) : without_score)) return outdone;
       if (is_enough) {
         made_.clear();
-        return Promising(ranking);
+        LACERTA_ASSIGN_OR_RETURN(std::vector<BaseChoice> bases, Promising(ranking));
+        return BestBases{std::move(bases), target_.is_rate ? target_.bytes : std::exp(tried_[best].score)};
       }
+      if (is_outdone(is_scored ? kLeastShare * std::exp(tried_[best].score) : LeastBytesFrom(HighestRung() + kStride))) return Outdone();
       Visit(next, next.size() == 1 ? likely : std::vector<BaseChoice>());
     }
   }
@@ -375,30 +381,46 @@ StatusOr<ResolvedTarget> ResolveTarget(const EncodeTarget& target, uint64_t num_
 
 StatusOr<ChosenStream> CodeAtTarget(const std::vector<RefinableSurface>& simplifications, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                     EncodeMode mode, const std::function<void(double, const char*)>& progress, const SearchEffort& effort,
-                                    const std::function<bool(double)>& is_outdone) {
+                                    const RivalStream* rival) {
   Ladder ladder(simplifications, meter, target, mode, effort);
-  const bool may_be_outdone = is_outdone && !target.is_rate;
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<BaseChoice> bases, ladder.FindBest(progress, may_be_outdone ? is_outdone : [](double) { return false; }));
+  const auto rival_takes_fewer_than = [&](double bytes) { return rival != nullptr && !target.is_rate && rival->takes_fewer_than(bytes); };
+  LACERTA_ASSIGN_OR_RETURN(const BestBases bases, ladder.FindBest(progress, rival_takes_fewer_than));
   if (progress) progress(0.8, "meeting the target");
   StatusOr<ChosenStream> best = InternalError("no base was taken to the target");
+  const auto num_input = static_cast<double>(simplifications.front().surface.mesh().positions.size());
   const auto meet = [&](Span<const BaseChoice> choices) {
     std::vector<StatusOr<ChosenStream>> met(choices.size(), InternalError("not tried"));
-    ForEachCandidate(static_cast<double>(simplifications.front().surface.mesh().positions.size()), met.size(), [&](size_t i) { met[i] = ladder.Meet(choices[i]); });
+    ForEachCandidate(num_input, met.size(), [&](size_t i) { met[i] = ladder.Meet(choices[i]); });
     for (StatusOr<ChosenStream>& tried : met) {  // one that fails costs only itself
       const bool is_better = !best.ok() || (tried.ok() && IsBetter(OutcomeOf(tried.value().measured), OutcomeOf(best.value().measured), target));
       if (is_better) best = std::move(tried);
     }
   };
   // Scores are estimates: a few candidates at a time are taken to the target until one meets it, and the better of them is kept.
-  const size_t at_a_time = target.quality_layers > 1 ? 1 : effort.at_a_time;  // with layers the fewest bytes are not all that counts
-  for (size_t first = 0; first < std::min(kMost, bases.size());) {
-    size_t count = 1;
-    while (count < at_a_time && first + count < bases.size() && !ladder.IsHopeless(bases[first + count], bases[first])) ++count;
-    meet(Span<const BaseChoice>(bases).Subspan(first).First(count));
-    if (best.ok() && best.value().measured.meets_target) break;
-    first += count;
-  }
-  if (effort.every_size) meet(ladder.FindHalfway());
+  const auto meet_best = [&] {
+    const Span<const BaseChoice> choices = bases.choices;
+    const size_t at_a_time = target.quality_layers > 1 ? 1 : effort.at_a_time;  // with layers the fewest bytes are not all that counts
+    for (size_t first = 0; first < std::min(kMost, choices.size());) {
+      size_t count = 1;
+      while (count < at_a_time && first + count < choices.size() && !ladder.IsHopeless(choices[first + count], choices[first])) ++count;
+      meet(choices.Subspan(first).First(count));
+      if (best.ok() && best.value().measured.meets_target) break;
+      first += count;
+    }
+    if (effort.every_size) meet(ladder.FindHalfway());
+  };
+  // Both take a while, mostly on one thread each: they are done at once, in vain for the bases where these are outdone.
+  const bool is_in_reach = std::isfinite(bases.bytes);
+  std::atomic<bool> is_outdone{false};
+  ForEachCandidate(is_in_reach ? num_input : kOneCandidateAtATime, 2, [&](size_t i) {
+    if (i == 0) {
+      is_outdone = rival_takes_fewer_than(kLeastShareAtEnd * bases.bytes);
+      if (!is_outdone && rival != nullptr && is_in_reach) rival->prepare_beside(bases.bytes);
+    } else if (!is_outdone) {
+      meet_best();
+    }
+  });
+  if (is_outdone) return Outdone();
   return best;
 }
 

@@ -42,14 +42,22 @@ Outcome OutcomeOf(const Stream& measured) {
 // What is asked for: the target met, then quality at a rate and bytes at a quality; where neither meets it, nearer to it.
 bool IsBetter(const Outcome& a, const Outcome& b, const ResolvedTarget& target);
 
+// A stream of another kind that may make one with levels needless. Called by one thread at a time.
+struct RivalStream {
+  // Whether it meets the PSNR in fewer than so many bytes; asked at a PSNR alone, as more becomes known, infinity where no base reaches the target.
+  std::function<bool(double bytes)> takes_fewer_than;
+  // To be found now, if it may be better than one of about so many bytes: others wait for nothing else.
+  std::function<void(double bytes)> prepare_beside;
+};
+
 // Codes the surface at the target: fewest bytes at a PSNR, highest PSNR at a number of bytes. Where no base size reaches the
 // target the nearest stream is returned, and says so.
 // simplifications: at least one, each of the same surface in another way; over which of them a stream takes the fewest bytes is up to the surface.
-// progress: as in EncodeOptions, may be empty. is_outdone: may be empty; asked at a PSNR, as more becomes known, with the bytes that the stream
-// will take at least, infinity where none reaches the target; once it says yes, kUnsupported is returned.
+// progress: as in EncodeOptions, may be empty. rival: may be null; once it takes fewer bytes than streams with levels will at least, kUnsupported is
+// returned.
 StatusOr<ChosenStream> CodeAtTarget(const std::vector<RefinableSurface>& simplifications, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
                                     const std::function<void(double, const char*)>& progress, const SearchEffort& effort = SearchEffort(),
-                                    const std::function<bool(double)>& is_outdone = {});
+                                    const RivalStream* rival = nullptr);
 
 }  // namespace lacerta
 

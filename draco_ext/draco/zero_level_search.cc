@@ -19,6 +19,7 @@ namespace lacerta {
 namespace {
 
 constexpr double kMostRegular = 4;  // times the triangles of the best simplified mesh: the input may take fewer bytes as it is
+constexpr double kLevelsWorthBytes = 0.05;  // as a share, of those of a stream that has some
 constexpr uint64_t kSizeSamples = 4000;  // that tell how far a mesh may be simplified
 
 double Square(double x) { return x * x; }
@@ -373,15 +374,24 @@ StatusOr<bool> SimplerStream::TakesFewerThan(double bytes) {
   return stream_.has_value();
 }
 
+Status SimplerStream::Look(double most_bytes) {
+  if (stream_ || IsHopeless(sequence_, meter_, target_, (1 - kLevelsWorthBytes) * most_bytes)) return Status();
+  LACERTA_ASSIGN_OR_RETURN(const bool may_be_better, Find(most_bytes));
+  if (!may_be_better) return Status();
+  LACERTA_ASSIGN_OR_RETURN(stream_, search_->Finish(most_bytes));
+  return Status();
+}
+
+void SimplerStream::PrepareBeside(double bytes) {
+  const Status looked = Look(bytes);  // what fails does so again in IsBetterThan
+  // It may yet have to come nearer to the target than one that misses it.
+  if (!looked.ok() || (stream_ && !stream_->meets_target)) stream_.reset();
+}
+
 StatusOr<bool> SimplerStream::IsBetterThan(const MeasuredStream& coded) {
-  const double most_bytes = coded.meets_target ? static_cast<double>(coded.stream.size()) : std::numeric_limits<double>::infinity();
-  constexpr double kLevelsWorthBytes = 0.05, kLevelsWorthPsnr = 0.3;
-  if (!stream_) {
-    if (IsHopeless(sequence_, meter_, target_, (1 - kLevelsWorthBytes) * most_bytes)) return false;
-    LACERTA_ASSIGN_OR_RETURN(const bool may_be_better, Find(most_bytes));
-    if (!may_be_better) return false;
-    LACERTA_ASSIGN_OR_RETURN(stream_, search_->Finish(most_bytes));
-  }
+  LACERTA_RETURN_IF_ERROR(Look(coded.meets_target ? static_cast<double>(coded.stream.size()) : std::numeric_limits<double>::infinity()));
+  if (!stream_) return false;
+  constexpr double kLevelsWorthPsnr = 0.3;
   const auto bytes_to_beat = static_cast<size_t>((1 - kLevelsWorthBytes) * static_cast<double>(coded.stream.size()));
   return IsBetter(OutcomeOf(*stream_), {coded.meets_target, bytes_to_beat, coded.psnr + kLevelsWorthPsnr}, target_);
 }

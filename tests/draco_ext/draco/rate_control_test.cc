@@ -189,35 +189,50 @@ TEST(CodeAtTargetTest, ReportsStages) {
   }
 }
 
+// A rival of so many bytes that takes note of what it is asked.
+struct NotingRival {
+  double bytes;
+  std::vector<double> asked = {}, prepared = {};
+
+  StatusOr<ChosenStream> Code(const Coder& coder, const ResolvedTarget& target) {
+    const RivalStream rival = {[&](double most) {
+                                 asked.push_back(most);
+                                 return bytes < most;
+                               },
+                               [&](double beside) { prepared.push_back(beside); }};
+    return CodeAtTarget({{coder.surface, coder.history, {}}}, coder.meter, target, EncodeMode::kDefault, {}, EffortOf(Effort::kFast), &rival);
+  }
+};
+
 TEST(CodeAtTargetTest, GivesUpWhereItIsOutdone) {
   const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
-  const auto code = [&](const ResolvedTarget& target, double bytes, std::vector<double>* asked) {
-    return CodeAtTarget({{coder.surface, coder.history, {}}}, coder.meter, target, EncodeMode::kDefault, {}, EffortOf(Effort::kFast), [&](double least) {
-      asked->push_back(least);
-      return least > bytes;
-    });
-  };
   const ResolvedTarget psnr{false, 0, 54};
-  std::vector<double> asked, asked_before, asked_at_a_rate;
-  const auto size = static_cast<double>(code(psnr, 1e9, &asked).value().measured.stream.size());
-  ASSERT_GE(asked.size(), 2u);
-  for (const double least : asked) EXPECT_LT(least, size) << "what the stream takes at least";
-  EXPECT_GT(asked.back(), 0.6 * size);
-  EXPECT_EQ(code(psnr, 0.5 * size, &asked_before).status().code(), StatusCode::kUnsupported);
-  EXPECT_TRUE(code({true, size, 0}, 0, &asked_at_a_rate).ok());
-  EXPECT_TRUE(asked_at_a_rate.empty());
+  NotingRival large{1e9};
+  const auto size = static_cast<double>(large.Code(coder, psnr).value().measured.stream.size());
+  ASSERT_GE(large.asked.size(), 2u);
+  for (const double least : large.asked) EXPECT_LT(least, size) << "what the stream takes at least";
+  EXPECT_GT(large.asked.back(), 0.6 * size);
+  ASSERT_EQ(large.prepared.size(), 1u) << "once it is known what the stream takes";
+  EXPECT_NEAR(large.prepared.front(), size, 0.2 * size);
+  NotingRival small{0.5 * size};
+  EXPECT_EQ(small.Code(coder, psnr).status().code(), StatusCode::kUnsupported);
+  EXPECT_TRUE(small.prepared.empty());
+}
+
+TEST(CodeAtTargetTest, ARivalIsOnlyPreparedAtARate) {
+  const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
+  NotingRival rival{0};
+  EXPECT_TRUE(rival.Code(coder, {true, 1000, 0}).ok());
+  EXPECT_TRUE(rival.asked.empty());
+  EXPECT_EQ(rival.prepared, std::vector<double>{1000});
 }
 
 TEST(CodeAtTargetTest, AnyStreamOutdoesBasesThatMissTheTarget) {
   const Coder coder(shapes::SpikySphere(3));  // spikes that a remesh blunts
-  double most = 0;
-  const StatusOr<ChosenStream> chosen = CodeAtTarget({{coder.surface, coder.history, {}}}, coder.meter, {false, 0, 120}, EncodeMode::kDefault, {},
-                                                     EffortOf(Effort::kFast), [&](double least) {
-                                                       most = least;
-                                                       return least > 1e9;
-                                                     });
-  EXPECT_EQ(chosen.status().code(), StatusCode::kUnsupported);
-  EXPECT_EQ(most, std::numeric_limits<double>::infinity());
+  NotingRival rival{1e9};
+  EXPECT_EQ(rival.Code(coder, {false, 0, 120}).status().code(), StatusCode::kUnsupported);
+  EXPECT_EQ(rival.asked.back(), std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(rival.prepared.empty());
 }
 
 TEST(CodeAtTargetTest, BeyondTheRemeshTheNearestIsReturned) {

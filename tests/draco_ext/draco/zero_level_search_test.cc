@@ -168,6 +168,27 @@ TEST_F(ZeroLevelSearchTest, TellsBeforeThereIsAStreamWhetherItTakesFewerBytes) {
   EXPECT_FALSE(SimplerStream(mesh_, sequence, meter_, rate).TakesFewerThan(1e9).value());
 }
 
+TEST_F(ZeroLevelSearchTest, WhatWasPreparedBesideAStreamIsWhatIsFoundWithoutThat) {
+  for (const ResolvedTarget& target : {ResolvedTarget{false, 0, 50}, ResolvedTarget{true, 2000, 0}}) {
+    MeasuredStream coded;
+    coded.meets_target = true;
+    coded.psnr = target.is_rate ? 30 : 50.1;
+    coded.stream.base = Bytes(target.is_rate ? 2000 : 6000);
+    const SimplificationSequence sequence(mesh_);
+    SimplerStream late(mesh_, sequence, meter_, target), early(mesh_, sequence, meter_, target), hopeless(mesh_, sequence, meter_, target);
+    ASSERT_TRUE(late.IsBetterThan(coded).value());
+    early.PrepareBeside(5000);
+    const Bytes prepared = early.stream().stream;
+    ASSERT_TRUE(early.IsBetterThan(coded).value());
+    EXPECT_EQ(early.stream().stream, prepared);
+    EXPECT_EQ(late.stream().stream, prepared);
+    if (target.is_rate) continue;
+    hopeless.PrepareBeside(10);
+    ASSERT_TRUE(hopeless.IsBetterThan(coded).value());
+    EXPECT_EQ(hopeless.stream().stream, prepared);
+  }
+}
+
 // Of large meshes one look tells whether a simplified one is worth trying: not at a fifth of the bytes it takes, never where it is better.
 TEST_F(ZeroLevelSearchTest, LargeMeshesAreNotDismissedWhereASimplerOneIsBetter) {
   for (const TriangleMesh& mesh : {shapes::BumpySphere(5, 0.2f), shapes::Torus(160, 64)}) {
