@@ -16,6 +16,7 @@
 #include "draco/base_weights.h"
 #include "draco/merge_values.h"
 #include "draco/mesh_conversion.h"
+#include "draco/smallest_predictions.h"
 #include "draco/stock_stream.h"
 
 namespace lacerta {
@@ -120,10 +121,14 @@ class GroupEncoder {
     MergeEqualValues(&mesh_);
     mesh_.DeduplicatePointIds();
     Bytes best;
+    int best_method = 0;
     for (const int method : {draco::MESH_EDGEBREAKER_STANDARD_ENCODING, draco::MESH_EDGEBREAKER_VALENCE_ENCODING}) {
-      LACERTA_ASSIGN_OR_RETURN(Bytes bytes, EncodeBy(method));
-      if (best.empty() || bytes.size() < best.size()) best = std::move(bytes);
+      LACERTA_ASSIGN_OR_RETURN(Bytes bytes, EncodeBy(method, {}));
+      if (!best.empty() && bytes.size() >= best.size()) continue;
+      best = std::move(bytes);
+      best_method = method;
     }
+    FindPredictions(mesh_, [&](const Predictions& predictions) { return EncodeBy(best_method, predictions); }, &best);
     for (const MarkedLattice& lattice_of : lattices_) LACERTA_RETURN_IF_ERROR(WriteGrid(lattice_of, &best));
     return best;
   }
@@ -193,11 +198,12 @@ class GroupEncoder {
     return AddLattice(draco::GeometryAttribute::GENERIC, unique_id, step, placed.points.data(), kKept);
   }
 
-  StatusOr<Bytes> EncodeBy(int method) const {
+  StatusOr<Bytes> EncodeBy(int method, const Predictions& predictions) const {
     draco::ExpertEncoder encoder(mesh_);
     encoder.SetSpeedOptions(0, 0);
     encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
     encoder.SetEncodingSubmethod(method);
+    LACERTA_RETURN_IF_ERROR(SetPredictions(predictions, &encoder));
     for (const MarkedLattice& l : lattices_) {
       encoder.SetAttributeExplicitQuantization(l.id, l.bits, static_cast<int>(l.mark.size()), l.mark.data(), l.MarkRange());
     }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "draco/merge_values.h"
+#include "draco/smallest_predictions.h"
 
 namespace lacerta {
 namespace {
@@ -154,10 +155,16 @@ Status SetLattice(const Lattice& lattice, size_t attribute, uint32_t components,
 
 enum class Connectivity { kStandard, kValence, kSequential };
 
-StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive, const DracoPrecision& precision,
-                            Connectivity connectivity) {
+struct StockCoding {
+  Connectivity connectivity;
+  Predictions predictions = {};  // empty: as Draco chooses
+};
+
+StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive, const DracoPrecision& precision, const StockCoding& coding) {
+  const Connectivity connectivity = coding.connectivity;
   draco::ExpertEncoder encoder(mesh);
   encoder.SetSpeedOptions(0, 0);
+  LACERTA_RETURN_IF_ERROR(SetPredictions(coding.predictions, &encoder));
   const bool sequential = connectivity == Connectivity::kSequential;
   encoder.SetEncodingMethod(sequential ? draco::MESH_SEQUENTIAL_ENCODING : draco::MESH_EDGEBREAKER_ENCODING);
   if (!sequential) {
@@ -186,6 +193,20 @@ StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive,
   return bytes;
 }
 
+// The same mesh with other triangles to begin with: all is coded in another order then.
+Status TryStarts(const Primitive& primitive, const DracoPrecision& precision, const StockCoding& coding, Bytes* best) {
+  constexpr size_t kMostStarts = 16, kTriangleBudget = 1u << 15;
+  const size_t num_triangles = primitive.triangles.size(), num_starts = std::min(kMostStarts, kTriangleBudget / num_triangles);
+  for (size_t start = 1; start < num_starts; ++start) {
+    Primitive rotated = primitive;
+    std::rotate(rotated.triangles.begin(), rotated.triangles.begin() + static_cast<std::ptrdiff_t>(start * num_triangles / num_starts), rotated.triangles.end());
+    LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, ToDraco(rotated, precision));
+    LACERTA_ASSIGN_OR_RETURN(Bytes bytes, EncodeStock(*mesh, rotated, precision, coding));
+    if (bytes.size() < best->size()) *best = std::move(bytes);
+  }
+  return Status();
+}
+
 }  // namespace
 
 Lattice PositionLattice(const Vec3f& min, const Vec3f& max, int bits) {
@@ -207,7 +228,7 @@ Primitive RoundAttributes(const Primitive& primitive, const DracoPrecision& prec
   return rounded;
 }
 
-StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const DracoPrecision& precision) {
+StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const DracoPrecision& precision, DracoSearch search) {
   if (primitive.triangles.empty()) return Unsupported("holds no triangles");
   for (const Attribute& attribute : primitive.attributes) {
     if (!AllFinite(attribute)) return Unsupported(attribute.name + " holds values that are not finite");
@@ -216,16 +237,23 @@ StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const Dr
   const Primitive rounded = RoundAttributes(primitive, precision);
   LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, ToDraco(rounded, precision));
   DracoEncoded result;
+  StockCoding smallest{};
   Status refused;
   for (const Connectivity connectivity : {Connectivity::kStandard, Connectivity::kValence, Connectivity::kSequential}) {
-    StatusOr<Bytes> bytes = EncodeStock(*mesh, rounded, precision, connectivity);
+    StatusOr<Bytes> bytes = EncodeStock(*mesh, rounded, precision, {connectivity});
     if (!bytes.ok()) {
       refused = bytes.status();
     } else if (result.bytes.empty() || bytes.value().size() < result.bytes.size()) {
       result.bytes = std::move(bytes).value();
+      smallest.connectivity = connectivity;
     }
   }
   if (result.bytes.empty()) return refused;
+  if (search == DracoSearch::kAll && smallest.connectivity != Connectivity::kSequential) {
+    const auto encode = [&](const Predictions& predictions) { return EncodeStock(*mesh, rounded, precision, {smallest.connectivity, predictions}); };
+    smallest.predictions = FindPredictions(*mesh, encode, &result.bytes);
+    LACERTA_RETURN_IF_ERROR(TryStarts(rounded, precision, smallest, &result.bytes));
+  }
   for (size_t i = 0; i < primitive.attributes.size(); ++i) {
     result.ids.push_back({primitive.attributes[i].name, mesh->attribute(static_cast<int>(i))->unique_id()});
   }

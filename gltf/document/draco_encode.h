@@ -38,11 +38,15 @@ struct DracoEncoded {
   Primitive decoded;                  // what a stock decoder makes of `bytes`
 };
 
-// Encodes with the smallest of Draco's ways to code connectivity, all with their most thorough predictions. Vertices
-// that agree in all attributes once these are rounded become one, and triangles without area by that and unused
+enum class DracoSearch {
+  kConnectivity,  // the smallest of Draco's ways to code connectivity, all with the predictions that Draco chooses
+  kAll,           // then the smallest prediction of each attribute, and other triangles to begin with: 5 to 20 times the work
+};
+
+// Vertices that agree in all attributes once these are rounded become one, and triangles without area by that and unused
 // vertices are dropped. Fails with kUnsupported when Draco refuses the primitive or it holds values that are not
 // finite.
-StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const DracoPrecision& precision);
+StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const DracoPrecision& precision, DracoSearch search = DracoSearch::kConnectivity);
 
 }  // namespace lacerta
 

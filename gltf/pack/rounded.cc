@@ -1,5 +1,7 @@
 #include "pack/rounded.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -121,6 +123,7 @@ class FamilyRounder {
     if (meter_.status().ok()) {
       LACERTA_ASSIGN_OR_RETURN(best, Coarsened(best));
     }
+    LACERTA_RETURN_IF_ERROR(Shrink(&best->family));
     return std::move(best->family);
   }
 
@@ -304,6 +307,18 @@ class FamilyRounder {
     }
     family.error = positions.distance;
     return trial;
+  }
+
+  // The same values in fewer bytes.
+  Status Shrink(RoundedFamily* family) const {
+    std::vector<Status> done(primitives_.size());
+    tbb::parallel_for(size_t{0}, primitives_.size(), [&](size_t m) {
+      StatusOr<DracoEncoded> smaller = EncodeDracoPrimitive(*primitives_[m], family->precisions[m], DracoSearch::kAll);
+      done[m] = smaller.status();
+      if (smaller.ok()) family->members[m] = std::move(smaller).value();
+    });
+    for (const Status& status : done) LACERTA_RETURN_IF_ERROR(status);
+    return Status();
   }
 
   // Says whether what is decoded meets the targets, and corrects the forecast.

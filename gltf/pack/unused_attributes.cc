@@ -36,6 +36,20 @@ bool HasTangentSpace(const GltfDocument& document, const std::vector<Place>& pla
   return has_one;
 }
 
+// Of a material that has another extension as well, such as a toon shader's, unlit is only what others show instead.
+bool IsUnlit(const Json& material) {
+  const Json* extensions = Find(material, "extensions");
+  return FindExtension(material, "KHR_materials_unlit") != nullptr && extensions->size() == 1;
+}
+
+// Whether light falls on any of them; it does on primitives without a material.
+bool IsLit(const GltfDocument& document, const std::vector<Place>& places) {
+  if (UsesExtension(document.json, "VRM")) return true;  // has shaders outside of materials
+  const std::vector<const Json*> materials = MaterialsOf(document, places);
+  return std::any_of(places.begin(), places.end(), [&](const Place& place) { return Find(PrimitiveAt(document, place), "material") == nullptr; }) ||
+         !std::all_of(materials.begin(), materials.end(), [](const Json* material) { return IsUnlit(*material); });
+}
+
 bool HasSkin(const GltfDocument& document, const std::vector<Place>& places) {
   for (uint64_t n = 0; n < ArraySize(document.json, "nodes"); ++n) {
     const Json& node = *FindElement(document.json, "nodes", n);
@@ -51,7 +65,8 @@ bool HasSkin(const GltfDocument& document, const std::vector<Place>& places) {
 bool IsUnused(const GltfDocument& document, const std::vector<Place>& places, const std::string& name) {
   if (const std::optional<uint64_t> set = SetOf(name, "TEXCOORD_")) return !IsTextured(document, places, *set);
   if (const std::optional<uint64_t> set = SetOf(name, "COLOR_")) return *set > 0;
-  if (name == "TANGENT") return !HasTangentSpace(document, places);
+  if (name == "NORMAL") return !IsLit(document, places);
+  if (name == "TANGENT") return !IsLit(document, places) || !HasTangentSpace(document, places);
   if (SetOf(name, "JOINTS_") || SetOf(name, "WEIGHTS_")) return !HasSkin(document, places);
   return false;
 }

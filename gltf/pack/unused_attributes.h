@@ -11,8 +11,8 @@
 namespace lacerta {
 
 // Whether no material that the primitives at `places` can have, and no skin, makes use of the attribute `name` of theirs: texture coordinates that
-// no texture is laid by, tangents without a normal map or anisotropy, colors beyond COLOR_0, joints and weights without a skin. Of application
-// attributes nobody can tell: they count as used.
+// no texture is laid by, normals and tangents of unlit materials, tangents without a normal map or anisotropy, colors beyond COLOR_0, joints and weights
+// without a skin. Of application attributes nobody can tell: they count as used.
 bool IsUnused(const GltfDocument& document, const std::vector<Place>& places, const std::string& name);
 
 // One sentence on what IsUnused in the asset, for a report; "" where nothing is.

@@ -352,8 +352,8 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   pack->add_flag("--shape-only", arguments->shape_only,
                  "Of .obj and .ply files take the shape alone, without texture coordinates, normals, colors and materials");
   pack->add_flag("--drop-unused", arguments->drop_unused,
-                 "Leave out attributes that nothing in the asset shows: texture coordinates without a texture, tangents without a normal map, colors beyond "
-                 "COLOR_0, weights without a skin");
+                 "Leave out attributes that nothing in the asset shows: texture coordinates without a texture, normals of unlit materials, tangents without a "
+                 "normal map, colors beyond COLOR_0, weights without a skin");
   pack->add_flag("--repair", arguments->repair,
                  "Mend numbers that are not finite instead of refusing the file, and tell so: vertices without a position go with their triangles, "
                  "other values follow those beside them");

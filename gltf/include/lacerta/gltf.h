@@ -60,8 +60,9 @@ struct PackOptions {
   // Offsets of morph targets stay floats. Else those that stand beside Draco become integers where these are precise enough, for readers
   // that know KHR_mesh_quantization.
   bool float_targets = false;
-  // Attributes that nothing in the asset shows go from what is stored anew: texture coordinates that no texture is laid by, tangents without a normal map or
-  // anisotropy, colors beyond COLOR_0, joints and weights without a skin. Else they stay, for materials that may come later, and the report has a note on them.
+  // Attributes that nothing in the asset shows go from what is stored anew: texture coordinates that no texture is laid by, normals and tangents of unlit
+  // materials, tangents without a normal map or anisotropy, colors beyond COLOR_0, joints and weights without a skin. Else they stay, for materials that may come
+  // later, and the report has a note on them.
   bool drop_unused = false;
   // Of a glTF asset: numbers that are not finite are mended, each primitive with a note in the report, instead of refused. Vertices
   // without a finite position go with their triangles; other values follow those beside them.

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <vector>
 
 #include "decoder/smooth_normals.h"
 #include "gltf/test_assets.h"
@@ -99,31 +102,76 @@ TEST(DracoEncode, DecodersGetTheRoundedValues) {
   DracoPrecision precision = Precision({-1, -4, 3}, {2, 0, 7}, 11);
   precision.lattices = {{"COLOR_0", LatticeOfStep({{-1.5f, -4.0f, 3.0f, 0.0f}, 5.0f, 0}, 0.01f)}};
   precision.normal_bits = 7;
-  const auto encoded = EncodeDracoPrimitive(primitive, precision);
-  ASSERT_TRUE(encoded.ok()) << encoded.status().message();
-  const Primitive rounded = RoundAttributes(primitive, precision);
-  const Primitive& decoded = encoded.value().decoded;
-  const Attribute* exact = decoded.Find("_EXACT");
-  ASSERT_NE(exact, nullptr);
-  ASSERT_EQ(decoded.num_vertices, primitive.num_vertices);
-  double moved = 0.0;
-  for (uint64_t i = 0; i < decoded.num_vertices; ++i) {
-    uint64_t v = 0;  // the exact attribute tells which vertex it was
-    const Attribute* original = primitive.Find("_EXACT");
-    while (v + 1 < primitive.num_vertices && (original->data.Float(v, 0) != exact->data.Float(i, 0) ||
-                                              original->data.Float(v, 1) != exact->data.Float(i, 1) ||
-                                              original->data.Float(v, 2) != exact->data.Float(i, 2))) {
-      ++v;
-    }
-    for (const char* name : {"POSITION", "NORMAL", "COLOR_0"}) {
-      for (uint32_t c = 0; c < 3; ++c) {
-        const float value = rounded.Find(name)->data.Float(v, c);
-        EXPECT_NEAR(decoded.Find(name)->data.Float(i, c), value, 2e-6f * (1.0f + std::abs(value))) << name;
-        moved = std::max(moved, static_cast<double>(std::abs(value - primitive.Find(name)->data.Float(v, c))));
+  for (const DracoSearch search : {DracoSearch::kConnectivity, DracoSearch::kAll}) {
+    const auto encoded = EncodeDracoPrimitive(primitive, precision, search);
+    ASSERT_TRUE(encoded.ok()) << encoded.status().message();
+    const Primitive rounded = RoundAttributes(primitive, precision);
+    const Primitive& decoded = encoded.value().decoded;
+    const Attribute* exact = decoded.Find("_EXACT");
+    ASSERT_NE(exact, nullptr);
+    ASSERT_EQ(decoded.num_vertices, primitive.num_vertices);
+    double moved = 0.0;
+    for (uint64_t i = 0; i < decoded.num_vertices; ++i) {
+      uint64_t v = 0;  // the exact attribute tells which vertex it was
+      const Attribute* original = primitive.Find("_EXACT");
+      while (v + 1 < primitive.num_vertices && (original->data.Float(v, 0) != exact->data.Float(i, 0) ||
+                                                original->data.Float(v, 1) != exact->data.Float(i, 1) ||
+                                                original->data.Float(v, 2) != exact->data.Float(i, 2))) {
+        ++v;
+      }
+      for (const char* name : {"POSITION", "NORMAL", "COLOR_0"}) {
+        for (uint32_t c = 0; c < 3; ++c) {
+          const float value = rounded.Find(name)->data.Float(v, c);
+          EXPECT_NEAR(decoded.Find(name)->data.Float(i, c), value, 2e-6f * (1.0f + std::abs(value))) << name;
+          moved = std::max(moved, static_cast<double>(std::abs(value - primitive.Find(name)->data.Float(v, c))));
+        }
       }
     }
+    EXPECT_GT(moved, 1e-3);  // there was something to round
   }
-  EXPECT_GT(moved, 1e-3);  // there was something to round
+}
+
+// Of every triangle the rows of all floats at its corners, the least row first; sorted.
+std::vector<std::vector<float>> TrianglesOf(const Primitive& primitive) {
+  std::vector<std::vector<float>> triangles;
+  for (const Triangle& t : primitive.triangles) {
+    std::array<std::vector<float>, 3> corners;
+    for (size_t k = 0; k < 3; ++k) {
+      for (const Attribute& attribute : primitive.attributes) {
+        for (uint32_t c = 0; c < attribute.data.components; ++c) corners[k].push_back(attribute.data.Float(t[k], c));
+      }
+    }
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    triangles.emplace_back();
+    for (const std::vector<float>& corner : corners) triangles.back().insert(triangles.back().end(), corner.begin(), corner.end());
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+// A texture that is stretched unevenly does not follow from positions.
+TEST(DracoEncode, MoreWaysTakeFewerBytesForTheSameValues) {
+  const TriangleMesh mesh = testing::WavySphere(12, 20);
+  Primitive primitive;
+  primitive.num_vertices = mesh.positions.size();
+  primitive.triangles = mesh.triangles;
+  primitive.attributes.push_back({"POSITION", MakeFloatAccessor(mesh.positions)});
+  std::vector<float> texture;
+  for (const Vec3f& p : mesh.positions) texture.insert(texture.end(), {0.5f + 0.5f * p.x * p.x * p.x, 0.5f + 0.1f * p.y});
+  primitive.attributes.push_back({"TEXCOORD_0", MakeFloatAccessor(texture, 2)});
+  primitive.attributes.push_back({"NORMAL", MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles))});
+  DracoPrecision precision = Precision({-1.5f, -1.5f, -1.5f}, {1.5f, 1.5f, 1.5f}, 11);
+  precision.lattices = {{"TEXCOORD_0", LatticeOfStep({{0, 0, 0, 0}, 1.5f, 0}, 0.001f)}};
+  precision.normal_bits = 8;
+  const auto quick = EncodeDracoPrimitive(primitive, precision);
+  const auto smaller = EncodeDracoPrimitive(primitive, precision, DracoSearch::kAll);
+  ASSERT_TRUE(quick.ok()) << quick.status().message();
+  ASSERT_TRUE(smaller.ok()) << smaller.status().message();
+  const auto before = static_cast<double>(quick.value().bytes.size()), after = static_cast<double>(smaller.value().bytes.size());
+  EXPECT_LT(after, 0.98 * before);
+  EXPECT_GT(after, 0.5 * before);
+  EXPECT_EQ(TrianglesOf(smaller.value().decoded), TrianglesOf(quick.value().decoded));
+  EXPECT_EQ(EncodeDracoPrimitive(primitive, precision, DracoSearch::kAll).value().bytes, smaller.value().bytes);
 }
 
 TEST(DracoEncode, RefusesWhatWouldCrashDraco) {
@@ -137,6 +185,7 @@ TEST(DracoEncode, RefusesWhatWouldCrashDraco) {
   EXPECT_FALSE(EncodeDracoPrimitive(primitive, grid).ok());
   primitive.triangles = {{1, 1, 2}};
   EXPECT_FALSE(EncodeDracoPrimitive(primitive, grid).ok());
+  EXPECT_FALSE(EncodeDracoPrimitive(primitive, grid, DracoSearch::kAll).ok());
 }
 
 TEST(DracoEncode, DecodingSurvivesTruncationAndNamesAttributes) {

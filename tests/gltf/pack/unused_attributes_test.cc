@@ -62,6 +62,22 @@ TEST(UnusedAttributes, TangentsAreUsedByNormalMapsAndAnisotropy) {
   EXPECT_TRUE(IsUnused(WithMaterial(R"({"emissiveTexture": {"index": 0}})"), 0, "TANGENT"));
 }
 
+TEST(UnusedAttributes, NormalsAreUsedByLight) {
+  const char* const unlit = R"({"normalTexture": {"index": 0}, "extensions": {"KHR_materials_unlit": {}}})";
+  for (const char* name : {"NORMAL", "TANGENT"}) {
+    EXPECT_TRUE(IsUnused(WithMaterial(unlit), 0, name)) << name;
+    EXPECT_FALSE(IsUnused(WithMaterial(unlit), 1, name)) << "its other material is lit: " << name;
+    GltfDocument bare = WithMaterial(unlit);
+    bare.json["meshes"][0]["primitives"][0].erase("material");
+    EXPECT_EQ(IsUnused(bare, 0, name), name == std::string("TANGENT")) << "the default material is lit, and has no normal map";
+  }
+  EXPECT_FALSE(IsUnused(WithMaterial(R"({"normalTexture": {"index": 0}})"), 0, "NORMAL"));
+  EXPECT_FALSE(IsUnused(WithMaterial(R"({"extensions": {"KHR_materials_unlit": {}, "VRMC_materials_mtoon": {}}})"), 0, "NORMAL"));
+  GltfDocument avatar = WithMaterial(unlit);
+  avatar.json["extensionsUsed"] = {"VRM"};
+  EXPECT_FALSE(IsUnused(avatar, 0, "NORMAL"));
+}
+
 TEST(UnusedAttributes, WeightsAreUsedBySkins) {
   GltfDocument document = WithMaterial("{}");
   document.json["nodes"][1]["skin"] = 0;
