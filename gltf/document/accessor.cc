@@ -74,7 +74,10 @@ Status ApplySparse(const GltfDocument& document, const Json& sparse, AccessorDat
   return Status();
 }
 
-StatusOr<AccessorData> ReadElements(const GltfDocument& document, const Json& accessor, uint32_t components) {
+// What an accessor without any data holds: glTF says zeros, unless an extension brings what is meant.
+enum class WithoutData { kRefused, kZeros };
+
+StatusOr<AccessorData> ReadElements(const GltfDocument& document, const Json& accessor, uint32_t components, WithoutData without_data) {
   AccessorData data;
   LACERTA_ASSIGN_OR_RETURN(data.type, ParseComponentType(accessor));
   data.components = components;
@@ -89,7 +92,7 @@ StatusOr<AccessorData> ReadElements(const GltfDocument& document, const Json& ac
     LACERTA_ASSIGN_OR_RETURN(const uint64_t stride,
                              GetIndex(*FindElement(document.json, "bufferViews", view), "byteStride", size));
     LACERTA_RETURN_IF_ERROR(CopyElements(bytes, offset, stride, size, data.count, &data.bytes));
-  } else if (sparse != nullptr && data.count <= kMaxSparseCount) {
+  } else if ((sparse != nullptr || without_data == WithoutData::kZeros) && data.count <= kMaxSparseCount) {
     data.bytes.resize(static_cast<size_t>(data.count * size));
   } else {
     return Unsupported("has no bufferView and thus no data");
@@ -100,7 +103,12 @@ StatusOr<AccessorData> ReadElements(const GltfDocument& document, const Json& ac
 
 StatusOr<AccessorData> ReadUnnamed(const GltfDocument& document, const Json& accessor) {
   LACERTA_ASSIGN_OR_RETURN(const uint32_t components, ParseComponents(accessor));
-  return ReadElements(document, accessor, components);
+  return ReadElements(document, accessor, components, WithoutData::kRefused);
+}
+
+StatusOr<AccessorData> ReadUnnamedOrZeros(const GltfDocument& document, const Json& accessor) {
+  LACERTA_ASSIGN_OR_RETURN(const uint32_t components, ParseComponents(accessor));
+  return ReadElements(document, accessor, components, WithoutData::kZeros);
 }
 
 StatusOr<AccessorData> ReadUnnamedMatrices(const GltfDocument& document, const Json& accessor) {
@@ -109,7 +117,7 @@ StatusOr<AccessorData> ReadUnnamedMatrices(const GltfDocument& document, const J
   if (type != ComponentType::kFloat || AsString(Find(accessor, "type")) != "MAT4") {
     return Unsupported("does not hold 4 x 4 matrices of floats");
   }
-  return ReadElements(document, accessor, kComponents);
+  return ReadElements(document, accessor, kComponents, WithoutData::kRefused);
 }
 
 StatusOr<AccessorData> ReadNamed(const GltfDocument& document, uint64_t index,
@@ -236,6 +244,10 @@ AccessorData MakeIndexAccessor(const std::vector<Triangle>& triangles, uint64_t 
 
 StatusOr<AccessorData> ReadAccessor(const GltfDocument& document, uint64_t index) {
   return ReadNamed(document, index, ReadUnnamed);
+}
+
+StatusOr<AccessorData> ReadAccessorOrZeros(const GltfDocument& document, uint64_t index) {
+  return ReadNamed(document, index, ReadUnnamedOrZeros);
 }
 
 StatusOr<AccessorData> ReadMatrices(const GltfDocument& document, uint64_t index) {

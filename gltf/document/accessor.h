@@ -57,6 +57,9 @@ std::vector<ComponentRange> ComponentRanges(const AccessorData& data);
 // an accessor without any data. Messages begin with "accessor N".
 StatusOr<AccessorData> ReadAccessor(const GltfDocument& document, uint64_t index);
 
+// The same, but an accessor without any data holds zeros, as glTF says where no extension brings others, unless it is too long for that.
+StatusOr<AccessorData> ReadAccessorOrZeros(const GltfDocument& document, uint64_t index);
+
 // The same for 4 x 4 matrices of floats, column by column: 16 components. Anything else is refused with kUnsupported.
 StatusOr<AccessorData> ReadMatrices(const GltfDocument& document, uint64_t index);
 

@@ -172,10 +172,11 @@ StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& f
 
 Bytes FormatGlb(const GltfDocument& document) {
   std::string json = document.json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  json.resize(Aligned(json.size()), ' ');
+  const uint64_t alignment = AlignmentOf(document.json);
+  json.resize(Aligned(20 + json.size(), alignment) - 20, ' ');
   const Bytes empty;
   const Bytes& bin = document.buffers.empty() ? empty : document.buffers[0];
-  const size_t padding = Aligned(bin.size()) - bin.size();
+  const size_t padding = Aligned(bin.size(), alignment) - bin.size();
   const size_t bin_chunk = bin.empty() ? 0 : 8 + bin.size() + padding;
   Bytes bytes;
   bytes.reserve(20 + json.size() + bin_chunk);
@@ -220,10 +221,21 @@ StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint
   LACERTA_ASSIGN_OR_RETURN(const Span<const uint8_t> bytes, AvailableViewBytes(document, index));
   const uint64_t length = *AsIndex(Find(*FindElement(document.json, "bufferViews", index), "byteLength"));
   if (bytes.size() < length) {
+    const uint64_t buffer = *AsIndex(Find(*FindElement(document.json, "bufferViews", index), "buffer"));
+    const Json* described = FindElement(document.json, "buffers", buffer);
+    if (bytes.empty() && described != nullptr && Find(*described, "uri") == nullptr) {
+      return Unsupported("bufferView " + std::to_string(index) + ": its bytes are not in the file: buffer " + std::to_string(buffer) +
+                         " has no \"uri\", and there is no BIN chunk for it");
+    }
     return InvalidData("bufferView " + std::to_string(index) + ": only " + std::to_string(bytes.size()) + " of its " +
                        std::to_string(length) + " bytes are in its buffer; the file is truncated or damaged");
   }
   return bytes;
+}
+
+uint64_t AlignmentOf(const Json& json) {
+  constexpr uint64_t kOfDoubles = 8;
+  return UsesExtension(json, "EXT_structural_metadata") ? kOfDoubles : kAlignment;
 }
 
 bool UsesExtension(const Json& json, const char* name) { return IsListed(json, "extensionsUsed", name); }

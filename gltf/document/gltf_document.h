@@ -36,10 +36,13 @@ bool IsGlb(Span<const uint8_t> bytes);
 // return.
 StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& folder);
 
+// Of the parts of a GLB and of what else begins in a buffer, bytes: 8 where EXT_structural_metadata, which asks for that, is used; else kAlignment.
+uint64_t AlignmentOf(const Json& json);
+
 // A GLB of the document. Its first buffer is in it; others must have a URI, or be what MergeBuffers leaves out.
 Bytes FormatGlb(const GltfDocument& document);
 
-// The bytes of bufferViews[index]. Fails with kInvalidData when the view or its range is not there.
+// The bytes of bufferViews[index]. Fails with kInvalidData when the view or its range is not there, kUnsupported where its buffer is in no file.
 StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint64_t index);
 
 // The same, but cut short where the buffer ends early. Fails when the view is not there.

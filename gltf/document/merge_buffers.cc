@@ -122,14 +122,14 @@ uint64_t MovedTo(const std::vector<Interval>& moved, uint64_t buffer, uint64_t o
   return buffer == interval.buffer && offset < interval.end ? interval.moved_to + (offset - interval.begin) : 0;
 }
 
-// The intervals one after the other, by turns; says where they went.
-Bytes Move(const std::vector<Bytes>& buffers, std::vector<Interval>* intervals) {
+// The intervals one after the other, by turns, as far off multiples of `alignment` as they were; says where they went.
+Bytes Move(const std::vector<Bytes>& buffers, uint64_t alignment, std::vector<Interval>* intervals) {
   Bytes merged;
   for (const Turn turn : {Turn::kNeeded, Turn::kStreams, Turn::kImage}) {
     for (Interval& interval : *intervals) {
       if (interval.turn != turn) continue;
       const Bytes& source = buffers[static_cast<size_t>(interval.buffer)];
-      while (merged.size() % kAlignment != interval.begin % kAlignment) merged.push_back(0);
+      while (merged.size() % alignment != interval.begin % alignment) merged.push_back(0);
       interval.moved_to = merged.size();
       merged.insert(merged.end(), source.begin() + static_cast<std::ptrdiff_t>(interval.begin),
                     source.begin() + static_cast<std::ptrdiff_t>(interval.end));
@@ -273,7 +273,7 @@ void MoveAccessors(const std::vector<Interval>& used, const std::vector<View>& v
 Status MergeBuffers(GltfDocument* document) {
   LACERTA_ASSIGN_OR_RETURN(std::vector<View> views, FindViews(document));
   std::vector<Interval> used = UsedParts(views);
-  Bytes merged = Move(document->buffers, &used);
+  Bytes merged = Move(document->buffers, AlignmentOf(document->json), &used);
   constexpr uint64_t kRoomForJson = uint64_t{1} << 30;
   if (merged.size() > std::numeric_limits<uint32_t>::max() - kRoomForJson) {
     return Unsupported("the result would not fit into a GLB (4 GB); split the asset");
@@ -283,7 +283,7 @@ Status MergeBuffers(GltfDocument* document) {
   MoveAccessors(used, views, document);
   document->buffers.clear();
   document->json.erase("buffers");
-  if (!merged.empty()) AddBuffer(std::move(merged), document);
+  if (!views.empty()) AddBuffer(std::move(merged), document);  // of no bytes, if that is what they refer to
   std::move(fallback).AddTo(document);
   DeclareMeshopt(document);
   return Status();

@@ -58,19 +58,30 @@ StatusOr<std::vector<uint32_t>> ReadCorners(const GltfDocument& document, const 
   return corners;
 }
 
+// Legal: an extension that is not known here may tell where the vertices are.
+Status NoPosition() { return Unsupported("has no POSITION"); }
+
+// Appends what is in core accessors of the attributes that `primitive` has not got yet.
+Status ReadAccessors(const GltfDocument& document, const Json& attributes, Primitive* primitive) {
+  for (const auto& [name, index] : attributes.items()) {
+    if (primitive->Find(name) != nullptr) continue;
+    const std::optional<uint64_t> accessor = AsIndex(&index);
+    if (!accessor.has_value()) return InvalidData("attribute " + name + " is no accessor index");
+    // Positions that are nowhere are those of a base that was left out.
+    StatusOr<AccessorData> data = name == "POSITION" ? ReadAccessor(document, *accessor) : ReadAccessorOrZeros(document, *accessor);
+    if (!data.ok()) return data.status().WithContext(name);
+    primitive->attributes.push_back({name, std::move(data).value()});
+  }
+  return Status();
+}
+
 StatusOr<Primitive> ReadPlain(const GltfDocument& document, const Json& primitive, uint64_t mode) {
   Primitive result;
   const Json* attributes = Find(primitive, "attributes");
   if (attributes == nullptr || !attributes->is_object()) return InvalidData("has no attributes");
-  for (const auto& [name, index] : attributes->items()) {
-    const std::optional<uint64_t> accessor = AsIndex(&index);
-    if (!accessor.has_value()) return InvalidData("attribute " + name + " is no accessor index");
-    StatusOr<AccessorData> data = ReadAccessor(document, *accessor);
-    if (!data.ok()) return data.status().WithContext(name);
-    result.attributes.push_back({name, std::move(data).value()});
-  }
+  LACERTA_RETURN_IF_ERROR(ReadAccessors(document, *attributes, &result));
   const Attribute* position = result.Find("POSITION");
-  if (position == nullptr) return InvalidData("has no POSITION");
+  if (position == nullptr) return NoPosition();
   result.num_vertices = position->data.count;
   for (const Attribute& attribute : result.attributes) {
     if (attribute.data.count != result.num_vertices) {
@@ -108,10 +119,22 @@ StatusOr<Primitive> ReadDraco(const GltfDocument& document, const Json& primitiv
     }
     ids.push_back({name, static_cast<uint32_t>(*index)});
   }
-  StatusOr<Primitive> result = DecodeDracoPrimitive(bytes, ids, limits);
-  if (!result.ok()) return result.status().WithContext("bufferView " + std::to_string(view));
-  SetNormalized(document, primitive, &result.value());
-  return result;
+  StatusOr<Primitive> decoded = DecodeDracoPrimitive(bytes, ids, limits);
+  if (!decoded.ok()) return decoded.status().WithContext("bufferView " + std::to_string(view));
+  Primitive& result = decoded.value();
+  SetNormalized(document, primitive, &result);
+  // What the stream has not got is beside it, for the vertices that it decodes to.
+  const size_t num_decoded = result.attributes.size();
+  const Json* all = Find(primitive, "attributes");
+  if (all != nullptr && all->is_object()) LACERTA_RETURN_IF_ERROR(ReadAccessors(document, *all, &result));
+  for (size_t i = num_decoded; i < result.attributes.size(); ++i) {
+    const Attribute& beside = result.attributes[i];
+    if (beside.data.count != result.num_vertices) {
+      return Unsupported("has " + std::to_string(beside.data.count) + " elements of " + beside.name + " beside a Draco stream of " +
+                         std::to_string(result.num_vertices) + " vertices");
+    }
+  }
+  return decoded;
 }
 
 // accessor: of the positions, for messages.
@@ -150,7 +173,7 @@ StatusOr<Primitive> ReadUncheckedPrimitive(const GltfDocument& document, const J
       draco != nullptr ? ReadDraco(document, primitive, *draco, limits) : ReadPlain(document, primitive, mode);
   if (!result.ok()) return result.status();
   const Attribute* position = result.value().Find("POSITION");
-  if (position == nullptr) return InvalidData("has no POSITION");
+  if (position == nullptr) return NoPosition();
   if (position->data.components != 3) return InvalidData("POSITION is not of type VEC3");
   std::vector<Attribute>& attributes = result.value().attributes;
   std::stable_partition(attributes.begin(), attributes.end(), [](const Attribute& a) { return a.name == "POSITION"; });

@@ -29,9 +29,10 @@ struct Primitive {
 // Pointers to all of them, in order.
 std::vector<const Primitive*> PointersTo(const std::vector<Primitive>& primitives);
 
-// Reads an element of meshes[].primitives: triangles, strips and fans, core accessors or KHR_draco_mesh_compression.
-// Positions are finite and indices in range afterwards. Fails with kUnsupported for points and lines, kInvalidData for
-// what breaks the format; messages name accessor and index.
+// Reads an element of meshes[].primitives: triangles, strips and fans, core accessors, or KHR_draco_mesh_compression with those of the
+// attributes that are not in its stream.
+// Positions are finite and indices in range afterwards. Fails with kUnsupported for points and lines and where there are no positions,
+// kInvalidData for what breaks the format; messages name accessor and index.
 StatusOr<Primitive> ReadPrimitive(const GltfDocument& document, const Json& primitive, const DecodeLimits& limits);
 
 // The same, but positions may be anything.

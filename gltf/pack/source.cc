@@ -35,16 +35,18 @@ uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primi
       sum += SizeOf(document, Find(references, attribute.name.c_str()), attribute.data, StoredSize(attribute.data));
     }
   }
-  if (const Json* draco = FindExtension(json, kDracoName); draco != nullptr) {
+  const Json* draco = FindExtension(json, kDracoName);
+  if (draco != nullptr) {
     const StatusOr<Span<const uint8_t>> bytes =
         BufferViewBytes(document, AsIndex(Find(*draco, "bufferView")).value_or(0));
-    return sum + (bytes.ok() ? bytes.value().size() : 0);
+    sum += bytes.ok() ? bytes.value().size() : 0;
   }
   for (const Attribute& attribute : primitive.attributes) {
+    if (draco != nullptr && Find(*Find(*draco, "attributes"), attribute.name.c_str()) != nullptr) continue;
     const Json* reference = Find(*Find(json, "attributes"), attribute.name.c_str());
     sum += SizeOf(document, reference, attribute.data, attribute.data.bytes.size());
   }
-  if (const Json* index = Find(json, "indices"); AsIndex(index).has_value()) {
+  if (const Json* index = Find(json, "indices"); draco == nullptr && AsIndex(index).has_value()) {
     const StatusOr<AccessorData> indices = ReadAccessor(document, *AsIndex(index));
     if (indices.ok()) sum += SizeOf(document, index, indices.value(), indices.value().bytes.size());
   }
@@ -60,12 +62,11 @@ void RoundAnew(Primitive* primitive) {
   }
 }
 
-// Takes NORMAL off where it says what its absence says: flat shading. Tangents, and normals that targets move, need it.
-void TakeOffFlatNormals(const GltfDocument& document, const Json& json, Source* source) {
+// Takes NORMAL off where it says what its absence says: flat shading. Tangents, normal maps, and normals that targets move, need it.
+void TakeOffFlatNormals(const GltfDocument& document, Source* source) {
   Primitive& primitive = *source->primitive;
   const Attribute* normal = primitive.Find("NORMAL");
-  const Json* material = FindElement(document.json, "materials", AsIndex(Find(json, "material")).value_or(~uint64_t{0}));
-  const bool has_map = material != nullptr && Find(*material, "normalTexture") != nullptr;
+  const bool has_map = !IsUnused(document, source->places, "TANGENT");
   if (normal == nullptr || normal->data.components != 3 || has_map || primitive.Find("TANGENT") != nullptr || !source->targets.empty()) return;
   const auto position_at = [&](uint32_t v) { return VectorAt(primitive.attributes[0].data, v); };
   if (NormalsAreFlat(primitive.triangles, position_at, primitive.triangles, [&](uint32_t v) { return VectorAt(normal->data, v); })) {
@@ -123,7 +124,7 @@ Status ReadSource(const GltfDocument& document, bool drop_unused, Source* source
   RoundAnew(&*source->primitive);
   TakeOffZeroOffsets(&source->targets);
   if (drop_unused) TakeOffUnused(document, source);
-  TakeOffFlatNormals(document, json, source);
+  TakeOffFlatNormals(document, source);
   return Status();
 }
 

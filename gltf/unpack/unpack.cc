@@ -22,19 +22,42 @@
 namespace lacerta {
 namespace {
 
-// Scales the first `components` numbers of every element to length 1 (or, for weights, to the sum 1).
-void Normalize(uint32_t components, bool sum, AccessorData* data) {
+// Scales the first three numbers of every element to length 1.
+void Normalize(AccessorData* data) {
   for (uint64_t i = 0; i < data->count; ++i) {
-    float values[4] = {};
+    float values[3] = {};
     double norm = 0.0;
-    for (uint32_t c = 0; c < components; ++c) {
+    for (uint32_t c = 0; c < 3; ++c) {
       values[c] = data->Float(i, c);
-      norm += sum ? values[c] : static_cast<double>(values[c]) * values[c];
+      norm += static_cast<double>(values[c]) * values[c];
     }
-    if (!sum) norm = std::sqrt(norm);
+    norm = std::sqrt(norm);
     if (!(norm > 0.0)) continue;
-    for (uint32_t c = 0; c < components; ++c) values[c] = static_cast<float>(values[c] / norm);
-    std::memcpy(data->bytes.data() + i * data->components * sizeof(float), values, components * sizeof(float));
+    for (float& value : values) value = static_cast<float>(value / norm);
+    std::memcpy(data->bytes.data() + i * data->components * sizeof(float), values, sizeof(values));
+  }
+}
+
+// Scales what all sets of weights have at a vertex to the sum 1; each was rounded by itself.
+void NormalizeWeights(Primitive* primitive) {
+  std::vector<AccessorData*> sets;
+  for (Attribute& attribute : primitive->attributes) {
+    if (attribute.name.rfind("WEIGHTS_", 0) != 0) continue;
+    if (attribute.data.type != ComponentType::kFloat) return;
+    sets.push_back(&attribute.data);
+  }
+  for (uint64_t i = 0; i < primitive->num_vertices; ++i) {
+    double sum = 0.0;
+    for (const AccessorData* set : sets) {
+      for (uint32_t c = 0; c < set->components; ++c) sum += static_cast<double>(set->Float(i, c));
+    }
+    if (!(sum > 0.0)) continue;
+    for (AccessorData* set : sets) {
+      for (uint32_t c = 0; c < set->components; ++c) {
+        const auto weight = static_cast<float>(static_cast<double>(set->Float(i, c)) / sum);
+        std::memcpy(set->bytes.data() + (i * set->components + c) * sizeof(float), &weight, sizeof(weight));
+      }
+    }
   }
 }
 
@@ -44,7 +67,7 @@ void RestoreTangents(Primitive* primitive) {
   for (Attribute& attribute : primitive->attributes) {
     AccessorData& data = attribute.data;
     if (attribute.name != "TANGENT" || data.components != 4 || data.type != ComponentType::kFloat) continue;
-    Normalize(3, false, &data);
+    Normalize(&data);
     for (uint64_t i = 0; i < data.count; ++i) {
       const float sign = data.Float(i, 3) < 0.0f ? -1.0f : 1.0f;
       std::memcpy(data.bytes.data() + (4 * i + 3) * sizeof(float), &sign, sizeof(sign));
@@ -93,10 +116,9 @@ void RestoreUnits(Primitive* primitive) {
   for (Attribute& attribute : primitive->attributes) {
     AccessorData& data = attribute.data;
     if (data.type != ComponentType::kFloat) continue;
-    if (attribute.name == "NORMAL" && data.components == 3) Normalize(3, false, &data);
-    if (attribute.name == "WEIGHTS_0" && primitive->Find("WEIGHTS_1") == nullptr)
-      Normalize(data.components, true, &data);
+    if (attribute.name == "NORMAL" && data.components == 3) Normalize(&data);
   }
+  NormalizeWeights(primitive);
   RestoreLegalValues(primitive);
 }
 

@@ -48,6 +48,15 @@ TEST(GltfDocument, ReadsDataUris) {
   EXPECT_THAT(document.value().buffers[0], ::testing::ElementsAre(1, 2, 3, 255));
 }
 
+TEST(GltfDocument, ABufferInNoFileIsNamed) {
+  const auto document = ParseGltf(
+      FromText(R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4}], "bufferViews": [{"buffer": 0, "byteLength": 4}]})"), "");
+  ASSERT_TRUE(document.ok()) << document.status().message();
+  const Status status = BufferViewBytes(document.value(), 0).status();
+  EXPECT_EQ(status.code(), StatusCode::kUnsupported);
+  EXPECT_THAT(status.message(), HasSubstr("buffer 0 has no \"uri\", and there is no BIN chunk"));
+}
+
 TEST(GltfDocument, NamesWhatIsWrong) {
   EXPECT_THAT(MessageOf("{"), HasSubstr("not well formed at its end"));
   EXPECT_THAT(MessageOf("{\"asset\": [1, what?]}"), HasSubstr("not well formed at byte 14, where it goes on with \"what?]}\""));

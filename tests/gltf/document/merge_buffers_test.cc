@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "document/accessor.h"
+#include "document/alignment.h"
 #include "document/buffer_edit.h"
 
 namespace lacerta {
@@ -59,6 +60,36 @@ TEST(MergeBuffers, BytesThatAnImageSharesAreNotPutOff) {
   EXPECT_EQ(View(document, 0), Bytes({1, 2, 3}));
   EXPECT_EQ(View(document, 5), Bytes({2, 3, 4, 5}));
   EXPECT_LT(document.json["bufferViews"][5].value("byteOffset", uint64_t{0}), document.json["bufferViews"][1].value("byteOffset", uint64_t{0}));
+}
+
+// EXT_structural_metadata asks for multiples of 8, in the file as well.
+TEST(MergeBuffers, NumbersOfEightBytesStayAligned) {
+  for (const bool has_metadata : {false, true}) {
+    GltfDocument document = Document();
+    document.json["asset"] = {{"version", "2.0"}};
+    AddBufferView(AddBuffer(Bytes(16, 7), &document), 8, 8, &document);
+    if (has_metadata) document.json["extensionsUsed"] = {"EXT_structural_metadata"};
+    for (const char* name : {"", "x", "xx", "xxx", "xxxx"}) {
+      GltfDocument merged = document;
+      merged.json["asset"]["generator"] = name;
+      ASSERT_TRUE(MergeBuffers(&merged).ok());
+      const Bytes glb = FormatGlb(merged);
+      EXPECT_EQ(View(ParseGltf(glb, "").value(), 5), Bytes(8, 7));
+      const uint64_t offset = merged.json["bufferViews"][5].value("byteOffset", uint64_t{0});
+      const uint64_t bin = glb.size() - Aligned(merged.buffers[0].size(), AlignmentOf(merged.json));
+      EXPECT_EQ(offset % AlignmentOf(merged.json), 0u);
+      EXPECT_EQ(bin % AlignmentOf(merged.json), 0u);
+      EXPECT_EQ(glb.size() % AlignmentOf(merged.json), 0u);
+    }
+    EXPECT_EQ(AlignmentOf(document.json), has_metadata ? 8u : 4u);
+  }
+}
+
+TEST(MergeBuffers, ViewsOfNoBytesKeepABuffer) {
+  GltfDocument document;
+  AddBufferView(AddBuffer({}, &document), 0, 0, &document);
+  ASSERT_TRUE(MergeBuffers(&document).ok());
+  EXPECT_EQ(View(document, 0), Bytes());
 }
 
 TEST(MergeBuffers, TwiceIsAsOnce) {

@@ -93,6 +93,26 @@ TEST(Source, NormalsOfFlatShadingAreTakenOff) {
   EXPECT_FALSE(HasNormals(&builder, FlatBall(&builder)));
 }
 
+TEST(Source, NormalsStayWhereAnyMaterialOfThemHasANormalMap) {
+  const Json map = {{"normalTexture", {{"index", 0}}}}, clearcoat = {{"extensions", {{"KHR_materials_clearcoat", {{"clearcoatNormalTexture", {{"index", 0}}}}}}}};
+  for (const Json& material : {map, clearcoat}) {
+    AssetBuilder builder;
+    builder.document().json["materials"].push_back(material);
+    Json varied = FlatBall(&builder);
+    varied["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 1}, {"variants", {0}}}};
+    EXPECT_TRUE(HasNormals(&builder, std::move(varied)));
+  }
+  AssetBuilder builder;
+  builder.document().json["materials"].push_back(map);
+  Json plain = FlatBall(&builder), mapped = plain;
+  mapped["material"] = 1;
+  builder.AddMesh("plain", Json::array({plain}));
+  builder.AddMesh("mapped", Json::array({mapped}));
+  const std::vector<Source> sources = ReadSources(builder.document()).value();
+  ASSERT_EQ(sources.size(), 1u);
+  EXPECT_NE(sources[0].primitive->Find("NORMAL"), nullptr);
+}
+
 TEST(Source, NormalsThatSomethingNeedsStay) {
   {
     AssetBuilder builder;

@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "document/buffer_edit.h"
+#include "document/draco_encode.h"
 #include "document/gltf_document.h"
 #include "extension/progressive.h"
 #include "document/place.h"
@@ -40,6 +43,51 @@ ProgressiveSurface Read(const Bytes& glb, std::optional<int> level = std::nullop
   const auto surfaces = ReadProgressive(glb, options);
   EXPECT_TRUE(surfaces.ok()) << surfaces.status().message();
   return surfaces.ok() && surfaces.value().size() == 1 ? surfaces.value()[0] : ProgressiveSurface();
+}
+
+// Weights of two sets, each rounded to steps of its own, add up to 1 again.
+TEST(Unpack, WeightsOfAllSetsAddUpToOne) {
+  const TriangleMesh ball = WavySphere(8, 12);
+  Primitive primitive{ball.positions.size(), ball.triangles, {{"POSITION", MakeFloatAccessor(ball.positions)}}};
+  std::vector<float> first, second;
+  for (const Vec3f& p : ball.positions) {
+    const float share = 0.31f + 0.13f * p.x;
+    first.insert(first.end(), {share, 0.2f, 0.1f, 0.05f});
+    second.insert(second.end(), {0.65f - share, 0, 0, 0});
+  }
+  primitive.attributes.push_back({"WEIGHTS_0", MakeFloatAccessor(first, 4)});
+  primitive.attributes.push_back({"WEIGHTS_1", MakeFloatAccessor(second, 4)});
+  DracoPrecision precision{PositionLattice({-2, -2, -2}, {2, 2, 2}, 10), {}, 0};
+  precision.lattices = {{"WEIGHTS_0", LatticeOfStep({{0, 0, 0, 0}, 1.0f, 0}, 1.0f / 30)}, {"WEIGHTS_1", LatticeOfStep({{0, 0, 0, 0}, 1.0f, 0}, 1.0f / 17)}};
+  const DracoEncoded encoded = EncodeDracoPrimitive(primitive, precision).value();
+  const auto sum_at = [](const Primitive& p, uint64_t v) {
+    double sum = 0;
+    for (const char* name : {"WEIGHTS_0", "WEIGHTS_1"}) {
+      for (uint32_t c = 0; c < 4; ++c) sum += static_cast<double>(p.Find(name)->data.Float(v, c));
+    }
+    return sum;
+  };
+  double farthest = 0;
+  for (uint64_t v = 0; v < encoded.decoded.num_vertices; ++v) farthest = std::max(farthest, std::fabs(sum_at(encoded.decoded, v) - 1));
+  ASSERT_GT(farthest, 1e-3) << "there is something to mend";
+
+  testing::AssetBuilder builder;
+  GltfDocument& document = builder.document();
+  const uint64_t view = AddBufferView(AddBuffer(encoded.bytes, &document), 0, encoded.bytes.size(), &document);
+  Json json = {{"attributes", Json::object()}, {"extensions", {{"KHR_draco_mesh_compression", {{"bufferView", view}, {"attributes", Json::object()}}}}}};
+  for (const DracoAttributeId& id : encoded.ids) {
+    Json accessor = DescribeAccessor(encoded.decoded.Find(id.name)->data, id.name == "POSITION");
+    json["attributes"][id.name] = AddAccessor(std::move(accessor), &document);
+    json["extensions"]["KHR_draco_mesh_compression"]["attributes"][id.name] = id.id;
+  }
+  json["indices"] = AddAccessor({{"componentType", 5125}, {"type", "SCALAR"}, {"count", 3 * encoded.decoded.triangles.size()}}, &document);
+  builder.AddMesh("ball", Json::array({json}));
+  const StatusOr<UnpackResult> unpacked = UnpackGltf(builder.Glb(), {});
+  ASSERT_TRUE(unpacked.ok()) << unpacked.status().message();
+  const GltfDocument plain = ParseGltf(unpacked.value().glb, "").value();
+  const Primitive read = ReadPrimitive(plain, PrimitiveAt(plain, {0, 0}), DecodeLimits()).value();
+  ASSERT_EQ(read.num_vertices, encoded.decoded.num_vertices);
+  for (uint64_t v = 0; v < read.num_vertices; ++v) EXPECT_NEAR(sum_at(read, v), 1, 2e-7 * 8) << v;
 }
 
 TEST(Unpack, EveryLevelOfEveryFallback) {
