@@ -249,10 +249,10 @@ StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const Dr
     }
   }
   if (result.bytes.empty()) return refused;
-  if (search == DracoSearch::kAll && smallest.connectivity != Connectivity::kSequential) {
+  if (search != DracoSearch::kConnectivity && smallest.connectivity != Connectivity::kSequential) {
     const auto encode = [&](const Predictions& predictions) { return EncodeStock(*mesh, rounded, precision, {smallest.connectivity, predictions}); };
     smallest.predictions = FindPredictions(*mesh, encode, &result.bytes);
-    LACERTA_RETURN_IF_ERROR(TryStarts(rounded, precision, smallest, &result.bytes));
+    if (search == DracoSearch::kStarts) LACERTA_RETURN_IF_ERROR(TryStarts(rounded, precision, smallest, &result.bytes));
   }
   for (size_t i = 0; i < primitive.attributes.size(); ++i) {
     result.ids.push_back({primitive.attributes[i].name, mesh->attribute(static_cast<int>(i))->unique_id()});

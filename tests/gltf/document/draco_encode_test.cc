@@ -102,7 +102,7 @@ TEST(DracoEncode, DecodersGetTheRoundedValues) {
   DracoPrecision precision = Precision({-1, -4, 3}, {2, 0, 7}, 11);
   precision.lattices = {{"COLOR_0", LatticeOfStep({{-1.5f, -4.0f, 3.0f, 0.0f}, 5.0f, 0}, 0.01f)}};
   precision.normal_bits = 7;
-  for (const DracoSearch search : {DracoSearch::kConnectivity, DracoSearch::kAll}) {
+  for (const DracoSearch search : {DracoSearch::kConnectivity, DracoSearch::kPredictions, DracoSearch::kStarts}) {
     const auto encoded = EncodeDracoPrimitive(primitive, precision, search);
     ASSERT_TRUE(encoded.ok()) << encoded.status().message();
     const Primitive rounded = RoundAttributes(primitive, precision);
@@ -164,14 +164,22 @@ TEST(DracoEncode, MoreWaysTakeFewerBytesForTheSameValues) {
   precision.lattices = {{"TEXCOORD_0", LatticeOfStep({{0, 0, 0, 0}, 1.5f, 0}, 0.001f)}};
   precision.normal_bits = 8;
   const auto quick = EncodeDracoPrimitive(primitive, precision);
-  const auto smaller = EncodeDracoPrimitive(primitive, precision, DracoSearch::kAll);
+  const auto predicted = EncodeDracoPrimitive(primitive, precision, DracoSearch::kPredictions);
+  const auto smaller = EncodeDracoPrimitive(primitive, precision, DracoSearch::kStarts);
   ASSERT_TRUE(quick.ok()) << quick.status().message();
+  ASSERT_TRUE(predicted.ok()) << predicted.status().message();
   ASSERT_TRUE(smaller.ok()) << smaller.status().message();
+  EXPECT_LT(predicted.value().bytes.size(), quick.value().bytes.size());
+  EXPECT_LE(smaller.value().bytes.size(), predicted.value().bytes.size());
+  EXPECT_EQ(predicted.value().decoded.triangles, quick.value().decoded.triangles);
+  for (size_t a = 0; a < primitive.attributes.size(); ++a) {
+    EXPECT_EQ(predicted.value().decoded.attributes[a].data.bytes, quick.value().decoded.attributes[a].data.bytes);
+  }
   const auto before = static_cast<double>(quick.value().bytes.size()), after = static_cast<double>(smaller.value().bytes.size());
   EXPECT_LT(after, 0.98 * before);
   EXPECT_GT(after, 0.5 * before);
   EXPECT_EQ(TrianglesOf(smaller.value().decoded), TrianglesOf(quick.value().decoded));
-  EXPECT_EQ(EncodeDracoPrimitive(primitive, precision, DracoSearch::kAll).value().bytes, smaller.value().bytes);
+  EXPECT_EQ(EncodeDracoPrimitive(primitive, precision, DracoSearch::kStarts).value().bytes, smaller.value().bytes);
 }
 
 TEST(DracoEncode, RefusesWhatWouldCrashDraco) {
@@ -185,7 +193,7 @@ TEST(DracoEncode, RefusesWhatWouldCrashDraco) {
   EXPECT_FALSE(EncodeDracoPrimitive(primitive, grid).ok());
   primitive.triangles = {{1, 1, 2}};
   EXPECT_FALSE(EncodeDracoPrimitive(primitive, grid).ok());
-  EXPECT_FALSE(EncodeDracoPrimitive(primitive, grid, DracoSearch::kAll).ok());
+  EXPECT_FALSE(EncodeDracoPrimitive(primitive, grid, DracoSearch::kStarts).ok());
 }
 
 TEST(DracoEncode, DecodingSurvivesTruncationAndNamesAttributes) {
