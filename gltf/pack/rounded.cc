@@ -1,7 +1,5 @@
 #include "pack/rounded.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/for_each_branch.h"
 #include "pack/rounded_attributes.h"
 #include "pack/rounding_forecast.h"
 
@@ -317,8 +316,7 @@ class FamilyRounder {
 
   Status EncodeMembers(DracoSearch search, Trial* trial) const {
     std::vector<StatusOr<DracoEncoded>> encoded(primitives_.size(), InternalError("not encoded"));
-    tbb::parallel_for(size_t{0}, primitives_.size(),
-                      [&](size_t m) { encoded[m] = EncodeDracoPrimitive(*primitives_[m], trial->family.precisions[m], search); });
+    ForEachBranch(primitives_.size(), [&](size_t m) { encoded[m] = EncodeDracoPrimitive(*primitives_[m], trial->family.precisions[m], search); });
     trial->bytes = 0;
     trial->family.members.clear();
     for (StatusOr<DracoEncoded>& member : encoded) {
