@@ -159,6 +159,7 @@ StatusOr<GltfDocument> ParseGltf(Span<const uint8_t> bytes, const std::string& f
   }
   GltfDocument document;
   document.folder = folder;
+  document.is_glb = IsGlb(bytes);
   LACERTA_ASSIGN_OR_RETURN(document.json, ParseGltfJson(chunks.json));
   for (uint64_t i = 0; i < ArraySize(document.json, "buffers"); ++i) {
     StatusOr<Bytes> buffer = LoadBuffer(*FindElement(document.json, "buffers", i), i == 0,
@@ -223,7 +224,8 @@ StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint
   if (bytes.size() < length) {
     const uint64_t buffer = *AsIndex(Find(*FindElement(document.json, "bufferViews", index), "buffer"));
     const Json* described = FindElement(document.json, "buffers", buffer);
-    if (bytes.empty() && described != nullptr && Find(*described, "uri") == nullptr) {
+    const bool is_of_bin_chunk = document.is_glb && buffer == 0;  // which may have been cut off
+    if (bytes.empty() && !is_of_bin_chunk && described != nullptr && Find(*described, "uri") == nullptr) {
       return Unsupported("bufferView " + std::to_string(index) + ": its bytes are not in the file: buffer " + std::to_string(buffer) +
                          " has no \"uri\", and there is no BIN chunk for it");
     }

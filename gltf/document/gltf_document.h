@@ -19,6 +19,7 @@ struct GltfDocument {
   // Instead of `buffers`, where a host keeps them itself; such a document is only read.
   std::vector<Span<const uint8_t>> borrowed_buffers;
   std::string folder;  // where relative URIs lead
+  bool is_glb = false;  // read from one
 };
 
 // The JSON of an asset, checked as far as everything here relies on it. Fails with kInvalidData or kUnsupported
@@ -42,7 +43,8 @@ uint64_t AlignmentOf(const Json& json);
 // A GLB of the document. Its first buffer is in it; others must have a URI, or be what MergeBuffers leaves out.
 Bytes FormatGlb(const GltfDocument& document);
 
-// The bytes of bufferViews[index]. Fails with kInvalidData when the view or its range is not there, kUnsupported where its buffer is in no file.
+// The bytes of bufferViews[index]. Fails with kInvalidData when the view or its range is not there, kUnsupported where its
+// buffer never was in the file.
 StatusOr<Span<const uint8_t>> BufferViewBytes(const GltfDocument& document, uint64_t index);
 
 // The same, but cut short where the buffer ends early. Fails when the view is not there.

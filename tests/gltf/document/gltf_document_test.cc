@@ -55,6 +55,13 @@ TEST(GltfDocument, ABufferInNoFileIsNamed) {
   const Status status = BufferViewBytes(document.value(), 0).status();
   EXPECT_EQ(status.code(), StatusCode::kUnsupported);
   EXPECT_THAT(status.message(), HasSubstr("buffer 0 has no \"uri\", and there is no BIN chunk"));
+
+  testing::AssetBuilder builder;
+  builder.AddMesh("ball", Json::array({builder.Primitive(testing::WavySphere(4, 6))}));
+  const Bytes glb = builder.Glb();
+  const size_t before_bin = glb.size() - ParseGltf(glb, "").value().buffers[0].size() - 8;
+  const GltfDocument cut = ParseGltf(Span<const uint8_t>(glb).First(before_bin), "").value();
+  EXPECT_EQ(BufferViewBytes(cut, 0).status().code(), StatusCode::kInvalidData) << "a file that was cut off";
 }
 
 TEST(GltfDocument, NamesWhatIsWrong) {
