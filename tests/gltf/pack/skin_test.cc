@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -68,13 +69,29 @@ TEST(Skin, SlotsWithoutWeightAreUnpackedAsJointZero) {
   EXPECT_GT(others, 0u);
 }
 
+// Vertices moved around the axis, with their texture and normals, by up to a sixteenth of their distance: all of a regular grid takes hardly more bytes than
+// what simplification leaves of it.
+shapes::SkinnedSoup Uneven(shapes::SkinnedSoup skinned) {
+  std::vector<VertexSoup::Attribute>& attributes = skinned.soup.attributes;
+  for (size_t v = 0; v < skinned.soup.positions.size(); ++v) {
+    Vec3f& p = skinned.soup.positions[v];
+    const float angle = std::atan2(p.y, p.x), by = 0.008f * std::sin(17 * angle + 23 * p.z);
+    const float x = std::cos(angle + by), y = std::sin(angle + by);
+    p = {x, y, p.z};
+    for (VertexSoup::Attribute& a : attributes) {
+      if (a.kind == AttributeKind::kTextureCoordinates) a.values[2 * v] += by / 6.2831853f;
+      if (a.kind == AttributeKind::kNormal) std::copy_n(std::array<float, 3>{x, y, 0}.begin(), 3, &a.values[3 * v]);
+    }
+  }
+  return skinned;
+}
+
 TEST(Skin, BentCylinderIsSimplifiedAndHoldsItsErrorInPoses) {
-  const Bytes asset = BentCylinder();
-  const PackResult all = Pack(asset, false);
-  const PackResult& simplified = PackedBentCylinder();
+  const Bytes asset = SkinnedCylinderAsset(Uneven(shapes::SkinnedCylinder(48, 104)), 60.0);
+  const PackResult all = Pack(asset, false), simplified = Pack(asset);
   const uint64_t bytes_of_all = all.report.primitives[0].bytes_after,
                  bytes = simplified.report.primitives[0].bytes_after;
-  EXPECT_GT(10 * bytes_of_all, 12 * bytes) << bytes_of_all << " / " << bytes;
+  EXPECT_GT(10 * bytes_of_all, 15 * bytes) << bytes_of_all << " / " << bytes;
   EXPECT_LT(bytes_of_all, 3 * bytes) << bytes_of_all << " / " << bytes;
   EXPECT_GT(WorstPsnr(asset, Unpacked(all)), 69.9);
   EXPECT_GT(WorstPsnr(asset, Unpacked(simplified)), 69.9);
@@ -125,9 +142,9 @@ TEST(Skin, WeightsAddUpToOne) {
 }
 
 TEST(Skin, PrimitivesStayJoinedInPoses) {
-  const Bytes asset = SkinnedCylinderAsset(shapes::SkinnedCylinder(48, 104), 60.0, true);
+  const Bytes asset = SkinnedCylinderAsset(Uneven(shapes::SkinnedCylinder(48, 60)), 60.0, true);
   const PackResult packed = Pack(asset);
-  EXPECT_NE(packed.report.primitives[0].reason.find("simplified from 4992"), std::string::npos)
+  EXPECT_NE(packed.report.primitives[0].reason.find("simplified from 2880"), std::string::npos)
       << packed.report.primitives[0].reason;
   const Bytes unpacked = Unpacked(packed);
   const auto points = [&](const Bytes& plain, uint64_t primitive, double time) {
