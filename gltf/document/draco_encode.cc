@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "draco/merge_values.h"
-#include "draco/smallest_predictions.h"
 
 namespace lacerta {
 namespace {
@@ -153,14 +152,9 @@ Status SetLattice(const Lattice& lattice, size_t attribute, uint32_t components,
   return Status();
 }
 
-enum class Connectivity { kStandard, kValence, kSequential };
+using Connectivity = DracoCoding::Connectivity;
 
-struct StockCoding {
-  Connectivity connectivity;
-  Predictions predictions = {};  // empty: as Draco chooses
-};
-
-StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive, const DracoPrecision& precision, const StockCoding& coding) {
+StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive, const DracoPrecision& precision, const DracoCoding& coding) {
   const Connectivity connectivity = coding.connectivity;
   draco::ExpertEncoder encoder(mesh);
   encoder.SetSpeedOptions(0, 0);
@@ -193,20 +187,6 @@ StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive,
   return bytes;
 }
 
-// The same mesh with other triangles to begin with: all is coded in another order then.
-Status TryStarts(const Primitive& primitive, const DracoPrecision& precision, const StockCoding& coding, Bytes* best) {
-  constexpr size_t kMostStarts = 16, kTriangleBudget = 1u << 15;
-  const size_t num_triangles = primitive.triangles.size(), num_starts = std::min(kMostStarts, kTriangleBudget / num_triangles);
-  for (size_t start = 1; start < num_starts; ++start) {
-    Primitive rotated = primitive;
-    std::rotate(rotated.triangles.begin(), rotated.triangles.begin() + static_cast<std::ptrdiff_t>(start * num_triangles / num_starts), rotated.triangles.end());
-    LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, ToDraco(rotated, precision));
-    LACERTA_ASSIGN_OR_RETURN(Bytes bytes, EncodeStock(*mesh, rotated, precision, coding));
-    if (bytes.size() < best->size()) *best = std::move(bytes);
-  }
-  return Status();
-}
-
 }  // namespace
 
 Lattice PositionLattice(const Vec3f& min, const Vec3f& max, int bits) {
@@ -237,7 +217,6 @@ StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const Dr
   const Primitive rounded = RoundAttributes(primitive, precision);
   LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, ToDraco(rounded, precision));
   DracoEncoded result;
-  StockCoding smallest{};
   Status refused;
   for (const Connectivity connectivity : {Connectivity::kStandard, Connectivity::kValence, Connectivity::kSequential}) {
     StatusOr<Bytes> bytes = EncodeStock(*mesh, rounded, precision, {connectivity});
@@ -245,20 +224,37 @@ StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const Dr
       refused = bytes.status();
     } else if (result.bytes.empty() || bytes.value().size() < result.bytes.size()) {
       result.bytes = std::move(bytes).value();
-      smallest.connectivity = connectivity;
+      result.coding.connectivity = connectivity;
     }
   }
   if (result.bytes.empty()) return refused;
-  if (search != DracoSearch::kConnectivity && smallest.connectivity != Connectivity::kSequential) {
-    const auto encode = [&](const Predictions& predictions) { return EncodeStock(*mesh, rounded, precision, {smallest.connectivity, predictions}); };
-    smallest.predictions = FindPredictions(*mesh, encode, &result.bytes);
-    if (search == DracoSearch::kStarts) LACERTA_RETURN_IF_ERROR(TryStarts(rounded, precision, smallest, &result.bytes));
+  if (search == DracoSearch::kPredictions && result.coding.connectivity != Connectivity::kSequential) {
+    const auto encode = [&](const Predictions& predictions) { return EncodeStock(*mesh, rounded, precision, {result.coding.connectivity, predictions}); };
+    result.coding.predictions = FindPredictions(*mesh, encode, &result.bytes);
   }
   for (size_t i = 0; i < primitive.attributes.size(); ++i) {
     result.ids.push_back({primitive.attributes[i].name, mesh->attribute(static_cast<int>(i))->unique_id()});
   }
   LACERTA_ASSIGN_OR_RETURN(result.decoded, DecodeDracoPrimitive(result.bytes, result.ids, DecodeLimits{}));
   if (result.decoded.triangles.empty()) return Unsupported("holds only degenerate triangles");
+  return result;
+}
+
+StatusOr<DracoEncoded> EncodeFromOtherTriangle(const Primitive& primitive, const DracoPrecision& precision, const DracoEncoded& encoded) {
+  constexpr size_t kMostStarts = 16, kTriangleBudget = 1u << 15;
+  const size_t num_triangles = primitive.triangles.size(), num_starts = std::min(kMostStarts, kTriangleBudget / num_triangles);
+  DracoEncoded result = encoded;
+  if (encoded.coding.connectivity == Connectivity::kSequential || num_starts < 2) return result;
+  const Primitive rounded = RoundAttributes(primitive, precision);
+  for (size_t start = 1; start < num_starts; ++start) {
+    Primitive rotated = rounded;
+    std::rotate(rotated.triangles.begin(), rotated.triangles.begin() + static_cast<std::ptrdiff_t>(start * num_triangles / num_starts), rotated.triangles.end());
+    LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, ToDraco(rotated, precision));
+    LACERTA_ASSIGN_OR_RETURN(Bytes bytes, EncodeStock(*mesh, rotated, precision, encoded.coding));
+    if (bytes.size() < result.bytes.size()) result.bytes = std::move(bytes);
+  }
+  if (result.bytes.size() == encoded.bytes.size()) return result;
+  LACERTA_ASSIGN_OR_RETURN(result.decoded, DecodeDracoPrimitive(result.bytes, result.ids, DecodeLimits{}));
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include "document/draco_primitive.h"
 #include "document/lattice.h"
 #include "document/primitive.h"
+#include "draco/smallest_predictions.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
 
@@ -32,22 +33,33 @@ Lattice PositionLattice(const Vec3f& min, const Vec3f& max, int bits);
 // What a decoder makes of the values, in the order of the input.
 Primitive RoundAttributes(const Primitive& primitive, const DracoPrecision& precision);
 
+// How stock Draco codes a primitive.
+struct DracoCoding {
+  enum class Connectivity { kStandard, kValence, kSequential };
+  Connectivity connectivity = Connectivity::kStandard;
+  Predictions predictions = {};  // empty: as Draco chooses
+};
+
 struct DracoEncoded {
   Bytes bytes;
   std::vector<DracoAttributeId> ids;  // in the order of the primitive's attributes
   Primitive decoded;                  // what a stock decoder makes of `bytes`
+  DracoCoding coding;
 };
 
 enum class DracoSearch {
   kConnectivity,  // the smallest of Draco's ways to code connectivity, all with the predictions that Draco chooses
   kPredictions,   // then the smallest prediction of each attribute: three times the work, the same decoded primitive
-  kStarts,        // then other triangles to begin with, which decode in another order: up to 20 times
 };
 
 // Vertices that agree in all attributes once these are rounded become one, and triangles without area by that and unused
 // vertices are dropped. Fails with kUnsupported when Draco refuses the primitive or it holds values that are not
 // finite.
 StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const DracoPrecision& precision, DracoSearch search = DracoSearch::kConnectivity);
+
+// What EncodeDracoPrimitive made of the two, in the same coding from the triangle on that takes the fewest bytes of some: the same values, in another order.
+// Of primitives of many triangles it is `encoded` again.
+StatusOr<DracoEncoded> EncodeFromOtherTriangle(const Primitive& primitive, const DracoPrecision& precision, const DracoEncoded& encoded);
 
 }  // namespace lacerta
 

@@ -298,7 +298,7 @@ class FamilyRounder {
       }
     }
     for (size_t a = 0; a < attributes_.size(); ++a) SetAttribute(a, levels.attributes[a], positions, &family);
-    LACERTA_RETURN_IF_ERROR(EncodeMembers(DracoSearch::kConnectivity, &trial));
+    LACERTA_RETURN_IF_ERROR(EncodeMembers(&trial, [&](size_t m) { return EncodeDracoPrimitive(*primitives_[m], family.precisions[m]); }));
     family.error = positions.distance;
     return trial;
   }
@@ -306,17 +306,22 @@ class FamilyRounder {
   // The same values in fewer bytes. Those in another order are measured at other samples, and have to meet the targets there as well.
   StatusOr<RoundedFamily> Shrunk(Trial trial) {
     constexpr double kWorthwhile = 0.003;  // of the bytes, for a measure
-    LACERTA_RETURN_IF_ERROR(EncodeMembers(DracoSearch::kPredictions, &trial));
+    LACERTA_RETURN_IF_ERROR(EncodeMembers(&trial, [&](size_t m) {
+      return EncodeDracoPrimitive(*primitives_[m], trial.family.precisions[m], DracoSearch::kPredictions);
+    }));
     Trial other = trial;
-    LACERTA_RETURN_IF_ERROR(EncodeMembers(DracoSearch::kStarts, &other));
+    LACERTA_RETURN_IF_ERROR(EncodeMembers(&other, [&](size_t m) {
+      return EncodeFromOtherTriangle(*primitives_[m], trial.family.precisions[m], trial.family.members[m]);
+    }));
     if (static_cast<double>(other.bytes) > (1.0 - kWorthwhile) * static_cast<double>(trial.bytes)) return std::move(trial.family);
     Measure(&other);
     return std::move(other.met ? other.family : trial.family);
   }
 
-  Status EncodeMembers(DracoSearch search, Trial* trial) const {
+  template <typename EncodeMember>
+  Status EncodeMembers(Trial* trial, const EncodeMember& encode) const {
     std::vector<StatusOr<DracoEncoded>> encoded(primitives_.size(), InternalError("not encoded"));
-    ForEachBranch(primitives_.size(), [&](size_t m) { encoded[m] = EncodeDracoPrimitive(*primitives_[m], trial->family.precisions[m], search); });
+    ForEachBranch(primitives_.size(), [&](size_t m) { encoded[m] = encode(m); });
     trial->bytes = 0;
     trial->family.members.clear();
     for (StatusOr<DracoEncoded>& member : encoded) {

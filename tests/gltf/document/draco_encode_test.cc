@@ -102,11 +102,15 @@ TEST(DracoEncode, DecodersGetTheRoundedValues) {
   DracoPrecision precision = Precision({-1, -4, 3}, {2, 0, 7}, 11);
   precision.lattices = {{"COLOR_0", LatticeOfStep({{-1.5f, -4.0f, 3.0f, 0.0f}, 5.0f, 0}, 0.01f)}};
   precision.normal_bits = 7;
-  for (const DracoSearch search : {DracoSearch::kConnectivity, DracoSearch::kPredictions, DracoSearch::kStarts}) {
-    const auto encoded = EncodeDracoPrimitive(primitive, precision, search);
-    ASSERT_TRUE(encoded.ok()) << encoded.status().message();
+  const auto quick = EncodeDracoPrimitive(primitive, precision);
+  ASSERT_TRUE(quick.ok()) << quick.status().message();
+  const auto predicted = EncodeDracoPrimitive(primitive, precision, DracoSearch::kPredictions);
+  ASSERT_TRUE(predicted.ok()) << predicted.status().message();
+  const auto elsewhere = EncodeFromOtherTriangle(primitive, precision, predicted.value());
+  ASSERT_TRUE(elsewhere.ok()) << elsewhere.status().message();
+  for (const DracoEncoded* encoded : {&quick.value(), &predicted.value(), &elsewhere.value()}) {
     const Primitive rounded = RoundAttributes(primitive, precision);
-    const Primitive& decoded = encoded.value().decoded;
+    const Primitive& decoded = encoded->decoded;
     const Attribute* exact = decoded.Find("_EXACT");
     ASSERT_NE(exact, nullptr);
     ASSERT_EQ(decoded.num_vertices, primitive.num_vertices);
@@ -165,9 +169,9 @@ TEST(DracoEncode, MoreWaysTakeFewerBytesForTheSameValues) {
   precision.normal_bits = 8;
   const auto quick = EncodeDracoPrimitive(primitive, precision);
   const auto predicted = EncodeDracoPrimitive(primitive, precision, DracoSearch::kPredictions);
-  const auto smaller = EncodeDracoPrimitive(primitive, precision, DracoSearch::kStarts);
   ASSERT_TRUE(quick.ok()) << quick.status().message();
   ASSERT_TRUE(predicted.ok()) << predicted.status().message();
+  const auto smaller = EncodeFromOtherTriangle(primitive, precision, predicted.value());
   ASSERT_TRUE(smaller.ok()) << smaller.status().message();
   EXPECT_LT(predicted.value().bytes.size(), quick.value().bytes.size());
   EXPECT_LE(smaller.value().bytes.size(), predicted.value().bytes.size());
@@ -179,7 +183,7 @@ TEST(DracoEncode, MoreWaysTakeFewerBytesForTheSameValues) {
   EXPECT_LT(after, 0.98 * before);
   EXPECT_GT(after, 0.5 * before);
   EXPECT_EQ(TrianglesOf(smaller.value().decoded), TrianglesOf(quick.value().decoded));
-  EXPECT_EQ(EncodeDracoPrimitive(primitive, precision, DracoSearch::kStarts).value().bytes, smaller.value().bytes);
+  EXPECT_EQ(EncodeFromOtherTriangle(primitive, precision, predicted.value()).value().bytes, smaller.value().bytes);
 }
 
 TEST(DracoEncode, RefusesWhatWouldCrashDraco) {
@@ -193,7 +197,7 @@ TEST(DracoEncode, RefusesWhatWouldCrashDraco) {
   EXPECT_FALSE(EncodeDracoPrimitive(primitive, grid).ok());
   primitive.triangles = {{1, 1, 2}};
   EXPECT_FALSE(EncodeDracoPrimitive(primitive, grid).ok());
-  EXPECT_FALSE(EncodeDracoPrimitive(primitive, grid, DracoSearch::kStarts).ok());
+  EXPECT_FALSE(EncodeDracoPrimitive(primitive, grid, DracoSearch::kPredictions).ok());
 }
 
 TEST(DracoEncode, DecodingSurvivesTruncationAndNamesAttributes) {
