@@ -57,9 +57,9 @@ enum class DracoSearch {
 // finite.
 StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const DracoPrecision& precision, DracoSearch search = DracoSearch::kConnectivity);
 
-// What EncodeDracoPrimitive made of the two, in the same coding from the triangle on that takes the fewest bytes of some: the same values, in another order.
-// Of primitives of many triangles it is `encoded` again.
-StatusOr<DracoEncoded> EncodeFromOtherTriangle(const Primitive& primitive, const DracoPrecision& precision, const DracoEncoded& encoded);
+// What EncodeDracoPrimitive made of the two, in the same coding with its triangles in the order that takes the fewest bytes of some: each component after
+// the one nearest to it where there are many, and from other triangles on, of primitives of few. The same values, in another order.
+StatusOr<DracoEncoded> EncodeInOtherOrder(const Primitive& primitive, const DracoPrecision& precision, const DracoEncoded& encoded);
 
 }  // namespace lacerta
 

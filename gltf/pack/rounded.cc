@@ -311,7 +311,7 @@ class FamilyRounder {
     }));
     Trial other = trial;
     LACERTA_RETURN_IF_ERROR(EncodeMembers(&other, [&](size_t m) {
-      return EncodeFromOtherTriangle(*primitives_[m], trial.family.precisions[m], trial.family.members[m]);
+      return EncodeInOtherOrder(*primitives_[m], trial.family.precisions[m], trial.family.members[m]);
     }));
     if (static_cast<double>(other.bytes) > (1.0 - kWorthwhile) * static_cast<double>(trial.bytes)) return std::move(trial.family);
     Measure(&other);
@@ -388,6 +388,7 @@ class FamilyRounder {
 
   void Report(const SurfaceErrors& errors, RoundedFamily* family) const {
     family->error = errors.distance;
+    family->everywhere.clear();  // of a measure before this one
     for (const MeshAttribute& attribute : meter_.original().attributes) {
       const size_t a = family->everywhere.size();
       const bool direction = IsDirection(attribute.kind);
