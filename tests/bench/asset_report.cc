@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -50,6 +51,7 @@ struct Asset {
   GltfDocument document;
   std::vector<Place> places;
   std::vector<Primitive> primitives;
+  std::vector<uint8_t> is_repeated;  // whether a primitive before it has the same vertices and indices, so that one stream does for both
   uint64_t target_bytes = 0;  // of morph targets, which Draco leaves as they are
 };
 
@@ -57,11 +59,14 @@ StatusOr<Asset> Read(const std::string& path) {
   Asset asset;
   LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, ReadFile(path));
   LACERTA_ASSIGN_OR_RETURN(asset.document, ParseGltf(bytes, FolderOf(path)));
+  std::set<std::pair<uint64_t, uint64_t>> firsts;
+  for (const std::vector<Place>& places : GroupByGeometry(asset.document)) firsts.insert({places[0].mesh, places[0].primitive});
   for (const Place& place : AllPlaces(asset.document)) {
     StatusOr<Primitive> primitive = ReadPrimitive(asset.document, PrimitiveAt(asset.document, place), {});
     if (!primitive.ok()) continue;
     const Json& json = PrimitiveAt(asset.document, place);
-    for (uint64_t t = 0; t < ArraySize(json, "targets"); ++t) {
+    const bool is_repeated = firsts.count({place.mesh, place.primitive}) == 0;
+    for (uint64_t t = 0; !is_repeated && t < ArraySize(json, "targets"); ++t) {
       for (const Json& accessor : *FindElement(json, "targets", t)) {
         const StatusOr<AccessorData> data = ReadAccessor(asset.document, accessor.get<uint64_t>());
         if (data.ok()) asset.target_bytes += StoredSize(data.value());
@@ -69,6 +74,7 @@ StatusOr<Asset> Read(const std::string& path) {
     }
     asset.places.push_back(place);
     asset.primitives.push_back(std::move(primitive).value());
+    asset.is_repeated.push_back(is_repeated);
   }
   return asset;
 }
@@ -144,10 +150,11 @@ StatusOr<Errors> MeasureAll(const std::vector<Judge>& judges, const std::vector<
 using Bits = std::array<int, 3>;  // positions, texture coordinates, directions
 
 // As the stock tools do it: every primitive by itself, over its own range.
-StatusOr<uint64_t> EncodeStock(const std::vector<Primitive>& primitives, const Bits& bits, std::vector<Primitive>* decoded) {
+StatusOr<uint64_t> EncodeStock(const Asset& asset, const Bits& bits, std::vector<Primitive>* decoded) {
   uint64_t sum = 0;
   decoded->clear();
-  for (const Primitive& primitive : primitives) {
+  for (size_t p = 0; p < asset.primitives.size(); ++p) {
+    const Primitive& primitive = asset.primitives[p];
     draco::Mesh mesh;
     mesh.set_num_points(static_cast<uint32_t>(primitive.num_vertices));
     for (const Triangle& t : primitive.triangles) {
@@ -187,7 +194,7 @@ StatusOr<uint64_t> EncodeStock(const std::vector<Primitive>& primitives, const B
     }
     draco::EncoderBuffer buffer;
     if (!encoder.EncodeToBuffer(&buffer).ok()) return Unsupported("Draco refuses a primitive");
-    sum += buffer.size();
+    sum += asset.is_repeated[p] ? 0 : buffer.size();
     const Span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(buffer.data()), buffer.size());
     LACERTA_ASSIGN_OR_RETURN(Primitive result, DecodeDracoPrimitive(bytes, ids, {}));
     decoded->push_back(std::move(result));
@@ -203,7 +210,7 @@ struct Stock {
 
 // The smallest of the sizes at which all errors are met: positions from the fewest bits on that meet theirs, for each the fewest bits of
 // the attributes, until finer positions no longer pay. Coarse positions move the texture, too.
-StatusOr<Stock> FewestStock(const std::vector<Primitive>& primitives, const std::vector<Judge>& judges, const Errors& wanted) {
+StatusOr<Stock> FewestStock(const Asset& asset, const std::vector<Judge>& judges, const Errors& wanted) {
   constexpr int kMostBits = 20;
   constexpr int kPatience = 2;
   std::optional<Stock> best;
@@ -216,7 +223,7 @@ StatusOr<Stock> FewestStock(const std::vector<Primitive>& primitives, const std:
     bool met = false, far = false;
     for (;;) {
       std::vector<Primitive> decoded;
-      LACERTA_ASSIGN_OR_RETURN(stock.bytes, EncodeStock(primitives, stock.bits, &decoded));
+      LACERTA_ASSIGN_OR_RETURN(stock.bytes, EncodeStock(asset, stock.bits, &decoded));
       const StatusOr<Errors> errors = MeasureAll(judges, decoded, kSearchSamples);  // a group may have lost its area
       stock.errors = errors.ok() ? errors.value() : Errors{0.0, 1e9, 1e9};
       far = stock.errors.psnr < wanted.psnr;
@@ -268,7 +275,7 @@ Status Report(const std::vector<std::string>& files, const Errors& wanted, bool 
 
   Stock stock;  // nothing where Draco refuses
   if (with_stock) {
-    if (const StatusOr<Stock> found = FewestStock(original.primitives, judges, wanted); found.ok()) stock = found.value();
+    if (const StatusOr<Stock> found = FewestStock(original, judges, wanted); found.ok()) stock = found.value();
   }
   uint64_t vertices = 0;
   for (const Primitive& primitive : original.primitives) vertices += primitive.num_vertices;
