@@ -8,12 +8,12 @@
 
 namespace lacerta {
 
-StatusOr<PackedScene> ReadPackedScene(const GltfDocument& document, bool drop_unused) {
+StatusOr<PackedScene> ReadPackedScene(const GltfDocument& document, const DroppedAttributes& dropped) {
   PackedScene scene;
   scene.document = &document;
   scene.texel_side = TexelSide(document);
   if (ArraySize(document.json, "skins") > 0) scene.poses = ScenePoses(document);
-  LACERTA_ASSIGN_OR_RETURN(scene.sources, ReadSources(document, drop_unused));
+  LACERTA_ASSIGN_OR_RETURN(scene.sources, ReadSources(document, dropped));
   const bool has_targets = std::any_of(scene.sources.begin(), scene.sources.end(), [](const Source& source) { return !source.targets.empty(); });
   if (has_targets) scene.weight_tracks = ReadWeightTracks(document);
   std::vector<PlacedSurface> surfaces;

@@ -28,8 +28,8 @@ struct PackedScene {
   std::vector<WeightTrack> weight_tracks;  // where there are morph targets
 };
 
-// Refers to the document. drop_unused: as for ReadSources. Fails like ReadSources and FindFamilies.
-StatusOr<PackedScene> ReadPackedScene(const GltfDocument& document, bool drop_unused);
+// Refers to the document. dropped: as for ReadSources. Fails like ReadSources and FindFamilies.
+StatusOr<PackedScene> ReadPackedScene(const GltfDocument& document, const DroppedAttributes& dropped);
 
 }  // namespace lacerta
 

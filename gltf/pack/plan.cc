@@ -240,7 +240,7 @@ void TakeStream(EncodedMesh encoded, const EncodeTarget& target, PrimitivePlan* 
 }
 
 StatusOr<std::vector<PrimitivePlan>> PlanPrimitives(const GltfDocument& document, const PackOptions& options) {
-  LACERTA_ASSIGN_OR_RETURN(const PackedScene scene, ReadPackedScene(document, options.drop_unused));
+  LACERTA_ASSIGN_OR_RETURN(const PackedScene scene, ReadPackedScene(document, {options.drop_unused, options.drop_tangents}));
   if (IsSharedBudget(scene, options)) return PlanForBytes(scene, options);
   PackOptions resolved = options;
   LACERTA_ASSIGN_OR_RETURN(resolved.encode.target, AsShare(options.encode.target, scene.families.scene_diagonal));

@@ -98,15 +98,18 @@ void TakeOffZeroOffsets(std::vector<MorphTarget>* targets) {
   TakeOffTargets([&](const Attribute& attribute) { return kept.count(attribute.name) == 0; }, targets);
 }
 
-void TakeOffUnused(const GltfDocument& document, Source* source) {
-  const auto is_unused = [&](const Attribute& attribute) { return IsUnused(document, source->places, attribute.name); };
-  if (!TakeOffTargets(is_unused, &source->targets)) return;
+void TakeOff(const DroppedAttributes& dropped, const GltfDocument& document, Source* source) {
+  const bool no_tangents = dropped.tangents && AreTangentsDerivable(document, source->places);
+  const auto is_dropped = [&](const Attribute& attribute) {
+    return (dropped.unused && IsUnused(document, source->places, attribute.name)) || (no_tangents && attribute.name == "TANGENT");
+  };
+  if (!TakeOffTargets(is_dropped, &source->targets)) return;
   std::vector<Attribute>& attributes = source->primitive->attributes;
-  attributes.erase(std::remove_if(attributes.begin(), attributes.end(), is_unused), attributes.end());
+  attributes.erase(std::remove_if(attributes.begin(), attributes.end(), is_dropped), attributes.end());
 }
 
 // source: its places are set.
-Status ReadSource(const GltfDocument& document, bool drop_unused, Source* source) {
+Status ReadSource(const GltfDocument& document, const DroppedAttributes& dropped, Source* source) {
   const Json& json = PrimitiveAt(document, source->places[0]);
   source->reason = ReasonToKeep(json);
   if (!source->reason.empty()) return Status();
@@ -123,7 +126,7 @@ Status ReadSource(const GltfDocument& document, bool drop_unused, Source* source
   source->targets = std::move(targets).value();
   RoundAnew(&*source->primitive);
   TakeOffZeroOffsets(&source->targets);
-  if (drop_unused) TakeOffUnused(document, source);
+  TakeOff(dropped, document, source);
   TakeOffFlatNormals(document, source);
   return Status();
 }
@@ -209,13 +212,13 @@ StatusOr<std::vector<MorphTarget>> ReadTargets(const GltfDocument& document, con
   return targets;
 }
 
-StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document, bool drop_unused) {
+StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document, const DroppedAttributes& dropped) {
   std::vector<Source> sources;
   for (const std::vector<Place>& places : GroupByGeometry(document)) {
     Source source;
     source.places = places;
     source.geometries = {places[0]};
-    const Status status = ReadSource(document, drop_unused, &source);
+    const Status status = ReadSource(document, dropped, &source);
     if (!status.ok()) return status.WithContext(PlaceName(document, places[0]));
     sources.push_back(std::move(source));
   }

@@ -33,12 +33,18 @@ std::string ReasonToKeep(const Json& primitive);
 // The morph targets of the primitive `json`.
 StatusOr<std::vector<MorphTarget>> ReadTargets(const GltfDocument& document, const Json& json, uint64_t num_vertices);
 
+// What is left out of what is read.
+struct DroppedAttributes {
+  bool unused = false;    // those that IsUnused
+  bool tangents = false;  // where AreTangentsDerivable
+};
+
 // Reads all primitives. Those with equal accessors, and those with other accessors of equal content, are one source.
 // Quantized positions, directions and texture coordinates (KHR_mesh_quantization) become floats: they are rounded anew. Normals of
-// flat shading, and what targets have of normals and tangents without moving them, are left out; so is what IsUnused, where that is to be dropped.
+// flat shading, and what targets have of normals and tangents without moving them, are left out; so is what is to be dropped.
 // Fails with kInvalidData on damaged data and on numbers that are not finite, naming mesh, primitive, accessor and index; what is legal but cannot be
 // compressed ends as a reason.
-StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document, bool drop_unused = false);
+StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document, const DroppedAttributes& dropped = {});
 
 // The meshes that the sources are in, and the nodes that show each of them.
 std::map<uint64_t, std::vector<uint64_t>> NodesByMesh(const GltfDocument& document, const std::vector<const Source*>& sources);

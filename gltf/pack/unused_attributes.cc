@@ -27,11 +27,15 @@ bool IsTextured(const GltfDocument& document, const std::vector<Place>& places, 
 }
 
 // normalTexture, or one of an extension's own, such as clearcoatNormalTexture.
+bool IsNormalMap(const std::string& role) { return role.find("ormalTexture") != std::string::npos; }
+
+bool IsAnisotropic(const Json& material) { return FindExtension(material, "KHR_materials_anisotropy") != nullptr; }
+
 bool HasTangentSpace(const GltfDocument& document, const std::vector<Place>& places) {
   bool has_one = false;
   for (const Json* material : MaterialsOf(document, places)) {
-    has_one = has_one || FindExtension(*material, "KHR_materials_anisotropy") != nullptr;
-    VisitTextures(*material, [&](const std::string& role, const Json&) { has_one = has_one || role.find("ormalTexture") != std::string::npos; });
+    has_one = has_one || IsAnisotropic(*material);
+    VisitTextures(*material, [&](const std::string& role, const Json&) { has_one = has_one || IsNormalMap(role); });
   }
   return has_one;
 }
@@ -69,6 +73,18 @@ bool IsUnused(const GltfDocument& document, const std::vector<Place>& places, co
   if (name == "TANGENT") return !IsLit(document, places) || !HasTangentSpace(document, places);
   if (SetOf(name, "JOINTS_") || SetOf(name, "WEIGHTS_")) return !HasSkin(document, places);
   return false;
+}
+
+bool AreTangentsDerivable(const GltfDocument& document, const std::vector<Place>& places) {
+  const Json* attributes = Find(PrimitiveAt(document, places[0]), "attributes");
+  bool are_derivable = true;
+  for (const Json* material : MaterialsOf(document, places)) {
+    are_derivable = are_derivable && !IsAnisotropic(*material);
+    VisitTextures(*material, [&](const std::string& role, const Json& texture) {
+      if (IsNormalMap(role)) are_derivable = are_derivable && Find(*attributes, ("TEXCOORD_" + std::to_string(TexCoordOf(texture))).c_str()) != nullptr;
+    });
+  }
+  return are_derivable;
 }
 
 std::string DescribeUnused(const GltfDocument& document) {

@@ -42,7 +42,7 @@ struct PackArguments {
   bool external = false;
   bool keep_vertices = false;
   bool shape_only = false;
-  bool drop_unused = false;
+  bool drop_unused = false, drop_tangents = false;
   bool repair = false;
   bool float_targets = false;
   BatchOptions batch;
@@ -213,6 +213,7 @@ StatusOr<FileOutcome> PackAsset(const PackArguments& arguments, const EncodeOpti
   options.attributes = arguments.attributes;
   options.simplify = !arguments.keep_vertices;
   options.drop_unused = arguments.drop_unused;
+  options.drop_tangents = arguments.drop_tangents;
   options.repair = arguments.repair;
   options.float_targets = arguments.float_targets;
   if (arguments.fallback == "plain") options.fallback = Fallback::kPlain;
@@ -354,6 +355,8 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
   pack->add_flag("--drop-unused", arguments->drop_unused,
                  "Leave out attributes that nothing in the asset shows: texture coordinates without a texture, normals of unlit materials, tangents without a "
                  "normal map, colors beyond COLOR_0, weights without a skin");
+  pack->add_flag("--drop-tangents", arguments->drop_tangents,
+                 "Leave out tangents of normal maps, for readers that compute them (MikkTSpace, as glTF says) or do without; those of anisotropy stay");
   pack->add_flag("--repair", arguments->repair,
                  "Mend numbers that are not finite instead of refusing the file, and tell so: vertices without a position go with their triangles, "
                  "other values follow those beside them");

@@ -55,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     FUZZ_CHECK(ReadSources(mended).ok() || !ReadSources(document.value()).ok());
   }
   const auto sources = ReadSources(document.value());
-  const auto used = ReadSources(document.value(), true);
+  const auto used = ReadSources(document.value(), {true, true});
   FUZZ_CHECK(used.ok() == sources.ok());
   if (!sources.ok()) return 0;
   for (const lacerta::Source& source : used.value()) CheckSource(source);

@@ -62,6 +62,21 @@ TEST(UnusedAttributes, TangentsAreUsedByNormalMapsAndAnisotropy) {
   EXPECT_TRUE(IsUnused(WithMaterial(R"({"emissiveTexture": {"index": 0}})"), 0, "TANGENT"));
 }
 
+TEST(UnusedAttributes, TangentsAreDerivableWhereNormalMapsAreLaidByCoordinatesThatAreThere) {
+  const auto are_derivable = [](const std::string& material, std::vector<Place> places) {
+    GltfDocument document = WithMaterial(material);
+    for (Json& mesh : document.json["meshes"]) mesh["primitives"][0]["attributes"]["TEXCOORD_1"] = 1;
+    return AreTangentsDerivable(document, places);
+  };
+  const std::string first = R"({"normalTexture": {"index": 0}})", second = R"({"normalTexture": {"index": 0, "texCoord": 1}})";
+  EXPECT_TRUE(are_derivable(second, {{0, 0}}));
+  EXPECT_TRUE(are_derivable(second, {{1, 0}}));
+  EXPECT_FALSE(are_derivable(first, {{0, 0}}));
+  EXPECT_FALSE(are_derivable(first, {{1, 0}})) << "by a variant's material";
+  EXPECT_TRUE(are_derivable(R"({"emissiveTexture": {"index": 0}})", {{0, 0}}));
+  EXPECT_FALSE(are_derivable(R"({"normalTexture": {"index": 0, "texCoord": 1}, "extensions": {"KHR_materials_anisotropy": {}}})", {{0, 0}}));
+}
+
 TEST(UnusedAttributes, NormalsAreUsedByLight) {
   const char* const unlit = R"({"normalTexture": {"index": 0}, "extensions": {"KHR_materials_unlit": {}}})";
   for (const char* name : {"NORMAL", "TANGENT"}) {
@@ -101,18 +116,23 @@ TEST(UnusedAttributes, AvatarsNameTexturesOutsideOfMaterials) {
   EXPECT_FALSE(IsUnused(document, 0, "TEXCOORD_0"));
 }
 
-// A ball with texture coordinates all over the place, whose material `texture` shows or not; a target moves it where `moves`.
-Bytes BallWithTexCoords(bool is_textured, bool moves) {
+// A ball with texture coordinates all over the place, whose material `texture` shows or not; a target moves it where `moves`. With tangents, too, where a
+// normal map is laid by `normal_map_set`.
+Bytes BallWithTexCoords(bool is_textured, bool moves, int normal_map_set = -1) {
   const TriangleMesh ball = WavySphere(24, 40);
-  std::vector<float> texcoords;
+  std::vector<float> texcoords, tangents;
   for (size_t v = 0; v < ball.positions.size(); ++v) {
     const auto number = static_cast<float>(v);
     texcoords.insert(texcoords.end(), {std::fmod(0.37f * number, 1.0f), std::fmod(0.61f * number, 1.0f)});
+    tangents.insert(tangents.end(), {std::cos(number), std::sin(number), 0.0f, 1.0f});
   }
   AssetBuilder builder;
   GltfDocument& document = builder.document();
   Json primitive = builder.Primitive(ball);
   primitive["attributes"]["TEXCOORD_0"] = AddAccessor(MakeAccessor(MakeFloatAccessor(texcoords, 2), AccessorUse::kAttribute, false, &document), &document);
+  if (normal_map_set >= 0) {
+    primitive["attributes"]["TANGENT"] = AddAccessor(MakeAccessor(MakeFloatAccessor(tangents, 4), AccessorUse::kAttribute, false, &document), &document);
+  }
   if (moves) {
     const uint64_t offsets = builder.AddFloats(std::vector<Vec3f>(ball.positions.size(), {0, 0, 0.5f}), true);
     primitive["targets"] = Json::array({{{"POSITION", offsets}, {"TEXCOORD_0", primitive["attributes"]["TEXCOORD_0"]}}});
@@ -120,6 +140,7 @@ Bytes BallWithTexCoords(bool is_textured, bool moves) {
   builder.AddMesh("ball", Json::array({primitive}));
   document.json["materials"][0].erase("extensions");  // any number in there may stand for an accessor, which then is kept
   if (is_textured) document.json["materials"][0]["emissiveTexture"] = {{"index", 0}};
+  if (normal_map_set >= 0) document.json["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", normal_map_set}};
   return builder.Glb();
 }
 
@@ -140,6 +161,21 @@ TEST(UnusedAttributes, GoWhereThatIsAskedFor) {
   EXPECT_LT(2 * dropped.glb.size(), kept.glb.size());
   EXPECT_THAT(kept.report.notes, Contains(HasSubstr("TEXCOORD_0 of 1 primitive")));
   EXPECT_THAT(dropped.report.notes, Contains(HasSubstr("dropped")));
+}
+
+TEST(UnusedAttributes, TangentsGoWhereThatIsAskedFor) {
+  const auto packed = [](int set, bool drop_tangents) {
+    PackOptions options;
+    options.drop_tangents = drop_tangents;
+    options.encode.effort = Effort::kFast;
+    return PackGltf(BallWithTexCoords(true, false, set), options).value().glb;
+  };
+  const Bytes kept = packed(0, false), dropped = packed(0, true);
+  EXPECT_TRUE(Attributes(kept).contains("TANGENT"));
+  EXPECT_FALSE(Attributes(dropped).contains("TANGENT"));
+  EXPECT_TRUE(Attributes(dropped).contains("TEXCOORD_0"));
+  EXPECT_LT(1.2 * static_cast<double>(dropped.size()), kept.size());
+  EXPECT_TRUE(Attributes(packed(1, true)).contains("TANGENT")) << "nothing says how to compute them";
 }
 
 TEST(UnusedAttributes, WhatTexturesShowStays) {
