@@ -90,7 +90,7 @@ StatusOr<FamilyCandidate> Simplified(const FamilyContext& context, const FamilyM
                              SimplifyMorphedFamily(meter, context.Targets(), context.Mixes(), context.MayRoundTargets(), context.scene->texel_side, bounds));
     candidate = ToCandidate(context, std::move(simplified.rounded), std::move(simplified.targets));
   } else {
-    LACERTA_ASSIGN_OR_RETURN(RoundedFamily simplified, SimplifyFamily(meter, bounds));
+    LACERTA_ASSIGN_OR_RETURN(RoundedFamily simplified, SimplifyFamily(meter, bounds, context.options->encode.effort));
     candidate = ToCandidate(context, std::move(simplified), {});
   }
   for (size_t m = 0; m < candidate.members.size(); ++m) {

@@ -153,6 +153,12 @@ StatusOr<SimplifiedFamily> SimplifyPrimitives(const FamilyMeter& meter, const st
   return SimplifiedFamily{std::move(primitives), std::move(simplified.errors)};
 }
 
+uint64_t BytesOf(const RoundedFamily& family) {
+  uint64_t bytes = 0;
+  for (const DracoEncoded& member : family.members) bytes += member.bytes.size();
+  return bytes;
+}
+
 }  // namespace
 
 StatusOr<RoundedFamily> SimplifyAndRound(const FamilyMeter& meter, const std::vector<double>& everywhere,
@@ -171,10 +177,19 @@ StatusOr<RoundedFamily> SimplifyAndRound(const FamilyMeter& meter, const std::ve
   return rounded;
 }
 
-StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vector<double>& everywhere) {
-  return SimplifyAndRound(meter, everywhere, [&](const SimplifiedFamily& simplified) {
+StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vector<double>& everywhere, Effort effort) {
+  const auto round = [&](const SimplifiedFamily& simplified) {
     return RoundFamily(PointersTo(simplified.primitives), meter, &simplified.errors, everywhere);
-  });
+  };
+  StatusOr<RoundedFamily> best = SimplifyAndRound(meter, everywhere, round);
+  if (!best.ok() || effort != Effort::kBest) return best;
+  for (const double share : {0.75, 0.93}) {  // of every target, beside the usual one
+    const StatusOr<SimplifiedFamily> simplified = SimplifyPrimitives(meter, everywhere, share);
+    if (!simplified.ok()) continue;
+    StatusOr<RoundedFamily> other = round(simplified.value());
+    if (other.ok() && BytesOf(other.value()) < BytesOf(best.value())) best = std::move(other);
+  }
+  return best;
 }
 
 }  // namespace lacerta

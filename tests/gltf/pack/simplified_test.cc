@@ -74,6 +74,24 @@ TEST(Simplified, HalvesStayJoinedAndMeetTheErrors) {
   }
 }
 
+TEST(Simplified, BestEffortKeepsTheSmallestOfSeveralShares) {
+  const TriangleMesh ball = testing::WavySphere(40, 64);
+  const Primitive upper = Half(ball, true);
+  int num_smaller = 0;
+  for (const double psnr : {52.0, 55.0, 58.0, 61.0}) {
+    const double error = DistanceOfPsnr(psnr, BoundingBoxDiagonal(ball));
+    const FamilyMeter meter({&upper}, error, {}, 1024, [](size_t, uint64_t) { return 1024.0; });
+    const auto usual = SimplifyFamily(meter), best = SimplifyFamily(meter, {}, Effort::kBest);
+    ASSERT_TRUE(usual.ok() && best.ok());
+    const size_t bytes = usual.value().members[0].bytes.size(), fewest = best.value().members[0].bytes.size();
+    EXPECT_LE(fewest, bytes);
+    EXPECT_GT(static_cast<double>(fewest), 0.8 * static_cast<double>(bytes));
+    EXPECT_LE(best.value().error, error);
+    num_smaller += fewest < bytes;
+  }
+  EXPECT_GT(num_smaller, 0);
+}
+
 TEST(Simplified, WhatLeavesRoundingNoRoomIsKeptCloser) {
   const TriangleMesh ball = testing::WavySphere(40, 64);
   const Primitive upper = Half(ball, true);
