@@ -1,8 +1,9 @@
 #include "draco/component_order.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <utility>
+#include <numeric>
 
 #include "geometry/position_table.h"
 #include "remesh/parity_forest.h"
@@ -10,12 +11,8 @@
 namespace lacerta {
 namespace {
 
-struct Component {
-  Vec3f start;  // its first corner
-  std::vector<Triangle> triangles;
-};
-
-std::vector<Component> ComponentsOf(const TriangleMesh& mesh) {
+// For each triangle the number of its component, counted by first triangles.
+std::vector<uint32_t> FindComponents(const TriangleMesh& mesh) {
   PositionTable table(mesh.positions.size());
   std::vector<uint32_t> welded(mesh.positions.size());
   for (uint32_t v = 0; v < welded.size(); ++v) welded[v] = table.FindOrEnter(mesh.positions, mesh.positions[v], v);
@@ -24,28 +21,38 @@ std::vector<Component> ComponentsOf(const TriangleMesh& mesh) {
     forest.Join(welded[t[0]], welded[t[1]], 0);
     forest.Join(welded[t[0]], welded[t[2]], 0);
   }
-  constexpr size_t kNone = std::numeric_limits<size_t>::max();
-  std::vector<size_t> of_root(welded.size(), kNone);
-  std::vector<Component> components;
+  constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+  std::vector<uint32_t> of_root(welded.size(), kNone), components;
+  components.reserve(mesh.triangles.size());
+  uint32_t count = 0;
   for (const Triangle& t : mesh.triangles) {
-    size_t& component = of_root[forest.Find(welded[t[0]]).root];
-    if (component == kNone) {
-      component = components.size();
-      components.push_back({mesh.positions[t[0]], {}});
-    }
-    components[component].triangles.push_back(t);
+    uint32_t& component = of_root[forest.Find(welded[t[0]]).root];
+    if (component == kNone) component = count++;
+    components.push_back(component);
   }
   return components;
 }
+
+struct Component {
+  Vec3f start;  // its first corner
+  std::vector<Triangle> triangles;
+};
 
 }  // namespace
 
 std::vector<Triangle> ByNearestComponents(const TriangleMesh& mesh, size_t fewest) {
   constexpr size_t kMostComponents = 1u << 13;
-  const std::vector<Component> components = ComponentsOf(mesh);
-  if (components.size() < fewest || components.size() > kMostComponents) return mesh.triangles;
-  std::vector<size_t> left;  // in their order
-  for (size_t c = 0; c < components.size(); ++c) left.push_back(c);
+  const std::vector<uint32_t> component_of = FindComponents(mesh);
+  const size_t count = component_of.empty() ? 0 : size_t{1} + *std::max_element(component_of.begin(), component_of.end());
+  if (count < fewest || count > kMostComponents) return mesh.triangles;
+  std::vector<Component> components(count);
+  for (size_t f = 0; f < component_of.size(); ++f) {
+    Component& component = components[component_of[f]];
+    if (component.triangles.empty()) component.start = mesh.positions[mesh.triangles[f][0]];
+    component.triangles.push_back(mesh.triangles[f]);
+  }
+  std::vector<uint32_t> left(count);  // in their order
+  std::iota(left.begin(), left.end(), 0u);
   std::vector<Triangle> result;
   result.reserve(mesh.triangles.size());
   for (auto next = left.begin(); !left.empty();) {

@@ -10,6 +10,9 @@
 
 namespace lacerta {
 
+// Of so many an order pays; of fewer, half a percent of the bytes more or less is up to chance.
+constexpr size_t kManyComponents = 64;
+
 // The triangles of a mesh, component after component: from the first on, the one whose first corner is nearest to that of the component before
 // (of equally near ones the first). Within a component they stay in their order. Components hang together by equal positions. The order that there is
 // where there are fewer components than `fewest`, or more than 8,192: the time goes with the square of their number.

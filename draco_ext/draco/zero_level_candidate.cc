@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "draco/component_order.h"
 #include "remesh/edge_flips.h"
 
 namespace lacerta {
@@ -18,6 +19,7 @@ double Distortion(const DistanceModel& model) { return std::max(model.forward, m
 ZeroLevelCandidate::ZeroLevelCandidate(const FitTarget& target, TriangleMesh mesh, Source source)
     : target_(target), mesh_(std::move(mesh)), source_(source) {
   constexpr int kRounds = 2;
+  mesh_.triangles = ByNearestComponents(mesh_, kManyComponents);
   if (mesh_.triangles.size() <= kMostFittedTriangles) {
     neighbors_.emplace(mesh_);
     if (source_ == Source::kSimplified) FitToSurface(target_, *neighbors_, RateModel(), kRounds, &mesh_);

@@ -256,7 +256,6 @@ StatusOr<DracoEncoded> EncodeInOtherOrder(const Primitive& primitive, const Drac
     best = rounded.triangles;
     return Status();
   };
-  constexpr size_t kManyComponents = 64;  // of fewer, half a percent more or less is up to chance
   std::vector<Triangle> nearest = ByNearestComponents(Surface(rounded), kManyComponents);
   if (nearest != rounded.triangles) LACERTA_RETURN_IF_ERROR(try_order(std::move(nearest)));
   const std::vector<Triangle> order = best;

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
+#include "draco/component_order.h"
 #include "lacerta/surface_distance.h"
 #include "remesh/simplify.h"
 #include "shapes/shapes.h"
@@ -61,6 +63,26 @@ TEST_F(ZeroLevelCandidateTest, FinerStepsAreCloserAndLarger) {
     last_bytes = coding.bytes;
   }
   EXPECT_GT(last_distortion, candidate.fit_distortion());
+}
+
+// Tetrahedra anywhere in a box, in the order in which they were made or with neighbors after each other.
+TEST(ZeroLevelCandidate, ManyComponentsAreCodedFromNeighborToNeighbor) {
+  std::mt19937 random(3);
+  const auto below = [&](float most) { return most * static_cast<float>(random() % 4096) / 4096; };
+  TriangleMesh mesh;
+  for (uint32_t i = 0; i < 300; ++i) {
+    const Vec3f place{below(10), below(10), below(10)};
+    for (const Vec3f& p : {Vec3f{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, {0, 0, 0.1f}}) mesh.positions.push_back(place + p);
+    const uint32_t v = 4 * i;
+    mesh.triangles.insert(mesh.triangles.end(), {{v, v + 2, v + 1}, {v, v + 1, v + 3}, {v, v + 3, v + 2}, {v + 1, v + 2, v + 3}});
+  }
+  const FitTarget target(mesh, 8000);
+  const auto coded = [&](const TriangleMesh& m) { return ZeroLevelCandidate(target, m, Source::kInput).Code(0.01, 1, CodingEffort::kQuick).value(); };
+  TriangleMesh ordered = mesh;
+  ordered.triangles = ByNearestComponents(mesh, 2);
+  ASSERT_NE(ordered.triangles, mesh.triangles);
+  EXPECT_EQ(coded(mesh).coded.stream, coded(ordered).coded.stream);
+  EXPECT_EQ(coded(mesh).coded.mesh.triangles.size(), mesh.triangles.size());
 }
 
 TEST_F(ZeroLevelCandidateTest, TheInputNeedsNoFit) {
