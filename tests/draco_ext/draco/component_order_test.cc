@@ -23,6 +23,7 @@ void AddSquare(const Vec3f& place, bool apart, TriangleMesh* mesh) {
 
 std::vector<float> PlacesOf(const TriangleMesh& mesh, const std::vector<Triangle>& triangles) {
   std::vector<float> places;
+  places.reserve(triangles.size());
   for (const Triangle& t : triangles) places.push_back(mesh.positions[t[0]].x);
   return places;
 }
