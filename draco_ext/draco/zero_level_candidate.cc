@@ -19,8 +19,8 @@ double Distortion(const DistanceModel& model) { return std::max(model.forward, m
 ZeroLevelCandidate::ZeroLevelCandidate(const FitTarget& target, TriangleMesh mesh, Source source)
     : target_(target), mesh_(std::move(mesh)), source_(source) {
   constexpr int kRounds = 2;
-  mesh_.triangles = ByNearestComponents(mesh_, kManyComponents);
   if (mesh_.triangles.size() <= kMostFittedTriangles) {
+    mesh_.triangles = ByNearestComponents(mesh_, kManyComponents);
     neighbors_.emplace(mesh_);
     if (source_ == Source::kSimplified) FitToSurface(target_, *neighbors_, RateModel(), kRounds, &mesh_);
     model_ = target_.ModelAt(mesh_, *neighbors_);
