@@ -356,7 +356,7 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
                  "Leave out attributes that nothing in the asset shows: texture coordinates without a texture, normals of unlit materials, tangents without a "
                  "normal map, colors beyond COLOR_0, weights without a skin");
   pack->add_flag("--drop-tangents", arguments->drop_tangents,
-                 "Leave out tangents of normal maps, for readers that compute them (MikkTSpace, as glTF says) or do without; those of anisotropy stay");
+                 "Leave out tangents of normal maps, for readers that compute them as glTF says (not all do: VTK shades dark without); those of anisotropy stay");
   pack->add_flag("--repair", arguments->repair,
                  "Mend numbers that are not finite instead of refusing the file, and tell so: vertices without a position go with their triangles, "
                  "other values follow those beside them");

@@ -65,7 +65,7 @@ struct PackOptions {
   // later, and the report has a note on them.
   bool drop_unused = false;
   // So do tangents that readers may compute from normals and texture coordinates, by MikkTSpace as glTF 2.0 says [3.7.2.1]: those of normal maps, not of
-  // anisotropy. Some readers take derivatives on the screen instead.
+  // anisotropy. Some readers take derivatives on the screen instead, and some, such as VTK 9.1, shade dark without.
   bool drop_tangents = false;
   // Of a glTF asset: numbers that are not finite are mended, each primitive with a note in the report, instead of refused. Vertices
   // without a finite position go with their triangles; other values follow those beside them.
