@@ -22,9 +22,10 @@ struct SimplifiedFamily {
 StatusOr<RoundedFamily> SimplifyAndRound(const FamilyMeter& meter, const std::vector<double>& everywhere,
                                          const std::function<StatusOr<RoundedFamily>(SimplifiedFamily)>& round);
 
-// The same, rounded by RoundFamily; at Effort::kBest with more and with less room for rounding as well, of which the smallest is kept. The errors of what is decoded, measured on the surface, meet the meter's targets and
-// `everywhere` (as in ErrorTargets, for the attributes of FamilyMeter::original). Fails with kUnsupported where
-// attributes cannot be interpolated (joints without a skin, application attributes) or the errors are not met.
+// The same, rounded by RoundFamily; at Effort::kBest with more and with less room for rounding as well, of which the smallest is kept. The errors of
+// what is decoded, measured on the surface, meet the meter's targets and `everywhere` (as in ErrorTargets, for the attributes of
+// FamilyMeter::original). Fails with kUnsupported where attributes cannot be interpolated (joints without a skin, application attributes) or the errors
+// are not met.
 StatusOr<RoundedFamily> SimplifyFamily(const FamilyMeter& meter, const std::vector<double>& everywhere = {}, Effort effort = Effort::kNormal);
 
 }  // namespace lacerta
