@@ -202,7 +202,7 @@ class GroupEncoder {
     draco::ExpertEncoder encoder(mesh_);
     encoder.SetSpeedOptions(0, 0);
     encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
-    encoder.options().SetGlobalInt("edgebreaker_method", method);
+    SetEdgebreaker(method, &encoder);
     LACERTA_RETURN_IF_ERROR(SetPredictions(predictions, &encoder));
     for (const MarkedLattice& l : lattices_) {
       encoder.SetAttributeExplicitQuantization(l.id, l.bits, static_cast<int>(l.mark.size()), l.mark.data(), l.MarkRange());

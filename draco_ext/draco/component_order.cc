@@ -6,31 +6,20 @@
 #include <numeric>
 
 #include "geometry/position_table.h"
-#include "remesh/parity_forest.h"
+#include "remesh/components.h"
 
 namespace lacerta {
 namespace {
 
-// For each triangle the number of its component, counted by first triangles.
-std::vector<uint32_t> FindComponents(const TriangleMesh& mesh) {
+// The mesh with equal positions as one vertex each; those that are one with another stay, without triangles.
+TriangleMesh Welded(TriangleMesh mesh) {
   PositionTable table(mesh.positions.size());
-  std::vector<uint32_t> welded(mesh.positions.size());
-  for (uint32_t v = 0; v < welded.size(); ++v) welded[v] = table.FindOrEnter(mesh.positions, mesh.positions[v], v);
-  ParityForest forest(welded.size());
-  for (const Triangle& t : mesh.triangles) {
-    forest.Join(welded[t[0]], welded[t[1]], 0);
-    forest.Join(welded[t[0]], welded[t[2]], 0);
+  std::vector<uint32_t> first(mesh.positions.size());
+  for (uint32_t v = 0; v < first.size(); ++v) first[v] = table.FindOrEnter(mesh.positions, mesh.positions[v], v);
+  for (Triangle& t : mesh.triangles) {
+    for (uint32_t& v : t) v = first[v];
   }
-  constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
-  std::vector<uint32_t> of_root(welded.size(), kNone), components;
-  components.reserve(mesh.triangles.size());
-  uint32_t count = 0;
-  for (const Triangle& t : mesh.triangles) {
-    uint32_t& component = of_root[forest.Find(welded[t[0]]).root];
-    if (component == kNone) component = count++;
-    components.push_back(component);
-  }
-  return components;
+  return mesh;
 }
 
 struct Component {
@@ -42,7 +31,7 @@ struct Component {
 
 std::vector<Triangle> ByNearestComponents(const TriangleMesh& mesh, size_t fewest) {
   constexpr size_t kMostComponents = 1u << 13;
-  const std::vector<uint32_t> component_of = FindComponents(mesh);
+  const std::vector<uint32_t> component_of = FindComponents(Welded(mesh));
   const size_t count = component_of.empty() ? 0 : size_t{1} + *std::max_element(component_of.begin(), component_of.end());
   if (count < fewest || count > kMostComponents) return mesh.triangles;
   std::vector<Component> components(count);

@@ -85,6 +85,8 @@ Status CheckCounts(const Counts& counts, size_t stream_size, const DecodeLimits&
 
 }  // namespace
 
+void SetEdgebreaker(int method, draco::ExpertEncoder* encoder) { encoder->options().SetGlobalInt("edgebreaker_method", method); }
+
 StatusOr<Bytes> EncodeIntegerPositions(const draco::Mesh& mesh, int bits, const StockSettings& settings) {
   const int positions = mesh.GetNamedAttributeId(draco::GeometryAttribute::POSITION);
   draco::ExpertEncoder encoder(mesh);
@@ -93,8 +95,7 @@ StatusOr<Bytes> EncodeIntegerPositions(const draco::Mesh& mesh, int bits, const 
   encoder.SetEncodingMethod(sequential ? draco::MESH_SEQUENTIAL_ENCODING : draco::MESH_EDGEBREAKER_ENCODING);
   if (!sequential) {
     const bool valence = settings.connectivity == StockSettings::Connectivity::kEdgebreakerValence;
-    encoder.options().SetGlobalInt("edgebreaker_method", valence ? draco::MESH_EDGEBREAKER_VALENCE_ENCODING
-                                                                 : draco::MESH_EDGEBREAKER_STANDARD_ENCODING);
+    SetEdgebreaker(valence ? draco::MESH_EDGEBREAKER_VALENCE_ENCODING : draco::MESH_EDGEBREAKER_STANDARD_ENCODING, &encoder);
   }
   const std::array<float, 3> origin = {0.0f, 0.0f, 0.0f};
   const auto range = static_cast<float>((1 << bits) - 1);

@@ -3,6 +3,7 @@
 #define LACERTA_DRACO_STOCK_STREAM_H_
 
 #include <draco/compression/config/compression_shared.h>
+#include <draco/compression/expert_encode.h>
 #include <draco/core/decoder_buffer.h>
 #include <draco/mesh/mesh.h>
 
@@ -30,6 +31,9 @@ struct StockSettings {
   // entropy coder's tables; the two choices above are made explicitly.
   int speed = 0;
 };
+
+// How edgebreaker codes connectivity: a draco::MeshEdgebreakerConnectivityEncodingMethod. Draco 1.5.5 does not read what its SetEncodingSubmethod sets.
+void SetEdgebreaker(int method, draco::ExpertEncoder* encoder);
 
 // Codes a mesh whose positions are the integers 0 .. 2^bits - 1, held as floats; 1 <= bits <= 24. A decoder gets the
 // very integers back, in Draco's order of vertices and faces. The mesh must pass CheckEncodable.

@@ -14,6 +14,7 @@
 
 #include "draco/component_order.h"
 #include "draco/merge_values.h"
+#include "draco/stock_stream.h"
 
 namespace lacerta {
 namespace {
@@ -163,8 +164,7 @@ StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive,
   const bool sequential = connectivity == Connectivity::kSequential;
   encoder.SetEncodingMethod(sequential ? draco::MESH_SEQUENTIAL_ENCODING : draco::MESH_EDGEBREAKER_ENCODING);
   if (!sequential) {
-    encoder.options().SetGlobalInt("edgebreaker_method", connectivity == Connectivity::kValence ? draco::MESH_EDGEBREAKER_VALENCE_ENCODING
-                                                                                                : draco::MESH_EDGEBREAKER_STANDARD_ENCODING);
+    SetEdgebreaker(connectivity == Connectivity::kValence ? draco::MESH_EDGEBREAKER_VALENCE_ENCODING : draco::MESH_EDGEBREAKER_STANDARD_ENCODING, &encoder);
   }
   for (size_t i = 0; i < primitive.attributes.size(); ++i) {
     const Attribute& attribute = primitive.attributes[i];
@@ -246,19 +246,18 @@ StatusOr<DracoEncoded> EncodeInOtherOrder(const Primitive& primitive, const Drac
   DracoEncoded result = encoded;
   if (encoded.coding.connectivity == Connectivity::kSequential) return result;
   Primitive rounded = RoundAttributes(primitive, precision);
-  std::vector<Triangle> best = rounded.triangles;
+  std::vector<Triangle> order = rounded.triangles;
   const auto try_order = [&](std::vector<Triangle> triangles) -> Status {
     rounded.triangles = std::move(triangles);
     LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, ToDraco(rounded, precision));
     LACERTA_ASSIGN_OR_RETURN(Bytes bytes, EncodeStock(*mesh, rounded, precision, encoded.coding));
-    if (bytes.size() >= result.bytes.size()) return Status();
-    result.bytes = std::move(bytes);
-    best = rounded.triangles;
+    if (bytes.size() < result.bytes.size()) result.bytes = std::move(bytes);
     return Status();
   };
-  std::vector<Triangle> nearest = ByNearestComponents(Surface(rounded), kManyComponents);
-  if (nearest != rounded.triangles) LACERTA_RETURN_IF_ERROR(try_order(std::move(nearest)));
-  const std::vector<Triangle> order = best;
+  if (std::vector<Triangle> nearest = ByNearestComponents(Surface(rounded), kManyComponents); nearest != order) {
+    LACERTA_RETURN_IF_ERROR(try_order(nearest));
+    if (result.bytes.size() < encoded.bytes.size()) order = std::move(nearest);
+  }
   const size_t num_starts = std::min(kMostStarts, kTriangleBudget / order.size());
   for (size_t start = 1; start < num_starts; ++start) {
     std::vector<Triangle> rotated = order;

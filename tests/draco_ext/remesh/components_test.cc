@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <random>
+#include <vector>
 
 #include "shapes/shapes.h"
 
@@ -19,6 +21,12 @@ TEST(ComponentsTest, HangTogetherByVertices) {
   EXPECT_EQ(CountComponents({points, {{0, 1, 2}, {4, 5, 6}, {6, 3, 0}}}), 1u);  // joined by the last
   EXPECT_EQ(CountComponents(shapes::BumpySphere(3)), 1u);
   EXPECT_EQ(CountComponents(shapes::TriangleSoup(2)), 320u);
+}
+
+TEST(ComponentsTest, AreNumberedByTheirFirstTriangles) {
+  const std::vector<Vec3f> points(10);
+  EXPECT_TRUE(FindComponents({}).empty());
+  EXPECT_EQ(FindComponents({points, {{7, 8, 9}, {0, 1, 2}, {3, 4, 5}, {5, 6, 0}, {9, 8, 7}}}), (std::vector<uint32_t>{0, 1, 1, 1, 0}));
 }
 
 TEST(ComponentsTest, AreThoseOfAnyOrder) {
