@@ -20,7 +20,7 @@ constexpr double kRemembered = 0.1, kRememberedCurves = 0.3;
 
 }  // namespace
 
-AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const WedgeMesh& start, const std::vector<double>& weights,
+AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const WedgeMesh& start, const std::vector<double>& weights, double farthest,
                                            AttributedSimplification* sequence)
     : input_(input),
       start_(start),
@@ -41,6 +41,7 @@ AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const We
   const Vec3d low = Vec3Cast<double>(box.low), high = Vec3Cast<double>(box.high);
   center_ = (low + high) * 0.5;
   if (Norm(high - low) > 0) scale_ = Norm(high - low);
+  most_squared_ = farthest / scale_ * (farthest / scale_);
   positions_.reserve(start.num_vertices());
   for (const Vec3f& p : start.mesh.positions) positions_.push_back((Vec3Cast<double>(p) - center_) * (1 / scale_));
   for (size_t a = 0; a < input.attributes.size(); ++a) {
@@ -165,7 +166,7 @@ bool AttributedSimplifier::MayCollapse(uint32_t u, uint32_t v) {
   return freedom_[u] == VertexFreedom::kSurface || freedom_[v] == VertexFreedom::kSurface || IsCurve(u, v, corners_u_);
 }
 
-// The link condition, and that no curve closes on itself: of a triangle that goes, at most one other edge is on a curve.
+// The link condition.
 bool AttributedSimplifier::KeepsTopology(uint32_t u, uint32_t v) {
   const uint32_t near_u = ++last_mark_, across = ++last_mark_;
   size_t num_shared = 0;
@@ -176,17 +177,11 @@ bool AttributedSimplifier::KeepsTopology(uint32_t u, uint32_t v) {
     const uint32_t t = corner / 3;
     if (!Has(t, v)) continue;
     ++num_shared;
-    int num_curves = 0;
-    for (size_t k = 0; k < 3; ++k) {
-      const uint32_t w = triangles_[t][k];
-      if (w == u || w == v) {
-        num_curves += curve_edges_[t] >> k & 1;
-      } else {
-        if (mark_[w] == across) return false;  // two triangles on the same three vertices
-        mark_[w] = across;
-      }
+    for (const uint32_t w : triangles_[t]) {
+      if (w == u || w == v) continue;
+      if (mark_[w] == across) return false;  // two triangles on the same three vertices
+      mark_[w] = across;
     }
-    if (num_curves == 2) return false;
   }
   if (num_shared == 0 || (num_shared == corners_u_.size() && num_shared == corners_v_.size())) return false;
   const auto has_both_across = [&](uint32_t corner, uint32_t end) {
@@ -205,6 +200,47 @@ bool AttributedSimplifier::KeepsTopology(uint32_t u, uint32_t v) {
   if (!v_has_both) return true;
   return std::none_of(corners_u_.begin(), corners_u_.end(),
                       [&](uint32_t corner) { return !Has(corner / 3, v) && has_both_across(corner, u); });
+}
+
+// Of the edges of a triangle but the one from u to v.
+int AttributedSimplifier::CountOtherCurves(uint32_t triangle, uint32_t u, uint32_t v) const {
+  int count = 0;
+  for (size_t k = 0; k < 3; ++k) {
+    const uint32_t w = triangles_[triangle][k];
+    count += (w == u || w == v) && (curve_edges_[triangle] >> k & 1) != 0;
+  }
+  return count;
+}
+
+// Whether a triangle of the same group lies across another edge of a triangle than the one from u to v.
+bool AttributedSimplifier::HasNeighborOfGroup(uint32_t triangle, uint32_t u, uint32_t v) const {
+  const auto group_of = [&](uint32_t t) { return input_.GroupOf(start_.source_face[t]); };
+  uint32_t apex = u;
+  for (const uint32_t w : triangles_[triangle]) apex = w != u && w != v ? w : apex;
+  for (const std::vector<uint32_t>* corners : {&corners_u_, &corners_v_}) {
+    for (const uint32_t corner : *corners) {
+      const uint32_t t = corner / 3;
+      if (t != triangle && Has(t, apex) && !(Has(t, u) && Has(t, v)) && group_of(t) == group_of(triangle)) return true;
+    }
+  }
+  return false;
+}
+
+// Curves become one where a triangle goes whose two other edges are on them, and with it a chart or its tip: what the attributes had there is
+// not among the quadrics any more, so the curves have to be near each other.
+bool AttributedSimplifier::MayJoinCurves(uint32_t u, uint32_t v, const Vec3d& position) const {
+  if (freedom_[u] == VertexFreedom::kSurface || freedom_[v] == VertexFreedom::kSurface) return true;
+  bool joins = false;
+  for (const uint32_t corner : corners_u_) {
+    const uint32_t t = corner / 3;
+    if (!Has(t, v) || CountOtherCurves(t, u, v) < 2) continue;
+    if (!HasNeighborOfGroup(t, u, v)) return false;
+    joins = true;
+  }
+  if (!joins) return true;
+  Quadric planes = remembered_[u];
+  planes += remembered_[v];
+  return planes.Evaluate(position) < most_squared_ * planes.quadratic.trace();
 }
 
 bool AttributedSimplifier::AnyTurnsOver(uint32_t moved, uint32_t other, const std::vector<uint32_t>& corners, const Vec3d& to) const {
@@ -290,7 +326,7 @@ void AttributedSimplifier::Run() {
       continue;
     }
     FindValues(position);
-    if (!KeepsTopology(kept, removed) || AnyTurnsOver(kept, removed, corners_u_, position) ||
+    if (!KeepsTopology(kept, removed) || !MayJoinCurves(kept, removed, position) || AnyTurnsOver(kept, removed, corners_u_, position) ||
         AnyTurnsOver(removed, kept, corners_v_, position) || AnyTextureTurnsOver(removed, corners_u_) ||
         AnyTextureTurnsOver(kept, corners_v_) || AnyTurnsFromNormals(kept, removed, corners_u_, position) ||
         AnyTurnsFromNormals(removed, kept, corners_v_, position)) {

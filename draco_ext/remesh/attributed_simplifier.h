@@ -16,7 +16,8 @@ namespace lacerta {
 
 class AttributedSimplifier {
  public:
-  AttributedSimplifier(const AttributedMesh& input, const WedgeMesh& start, const std::vector<double>& weights, AttributedSimplification* sequence);
+  AttributedSimplifier(const AttributedMesh& input, const WedgeMesh& start, const std::vector<double>& weights, double farthest,
+                       AttributedSimplification* sequence);
   void Run();
 
  private:
@@ -63,6 +64,9 @@ class AttributedSimplifier {
   bool MayCollapse(uint32_t u, uint32_t v);
   bool IsCurve(uint32_t u, uint32_t v, const std::vector<uint32_t>& corners_u) const;
   bool KeepsTopology(uint32_t u, uint32_t v);
+  int CountOtherCurves(uint32_t triangle, uint32_t u, uint32_t v) const;
+  bool HasNeighborOfGroup(uint32_t triangle, uint32_t u, uint32_t v) const;
+  bool MayJoinCurves(uint32_t u, uint32_t v, const Vec3d& position) const;
   void GatherNodes(uint32_t u, uint32_t v);
   void SumNodes();
   Placement Place(uint32_t u, uint32_t v);
@@ -101,6 +105,7 @@ class AttributedSimplifier {
   uint32_t last_mark_ = 0;
   uint32_t num_alive_ = 0;
   double edge_weight_ = 0;
+  double most_squared_ = 0;  // squared distance from its planes that a vertex may have where curves join
   CollapseQueue<Candidate> queue_;
 
   // Of the edge that is looked at.

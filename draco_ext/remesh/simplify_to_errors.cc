@@ -178,13 +178,15 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
   LACERTA_RETURN_IF_ERROR(CheckTargets(original, targets));
   const Search search(original, meter, targets, options);
   constexpr double kWorthwhile = 0.98;  // of the size, for another weighting
+  constexpr double kFarthest = 2;       // of the distance allowed in the mean, where a chart vanishes
+  const double farthest = kFarthest * ShapeTarget(meter, targets);
   std::vector<double> weights = WeightsOfTargets(original, meter, targets);
   std::optional<Trial> best;
   std::unique_ptr<const AttributedSimplification> best_sequence;
   const auto all = static_cast<double>(original.surface.triangles.size());
   double guess = 0.3 * all, most = all;
   for (int i = 0; i < std::max(options.num_weightings, 1); ++i) {
-    auto sequence = std::make_unique<const AttributedSimplification>(original, weights);
+    auto sequence = std::make_unique<const AttributedSimplification>(original, weights, std::vector<uint8_t>(), farthest);
     LACERTA_ASSIGN_OR_RETURN(auto found, search.Smallest(*sequence, guess, most));
     if (!found.smallest) break;
     search.Reweight(found, &weights);

@@ -237,6 +237,60 @@ TEST(AttributedSimplificationTest, NoTriangleTurnsFromItsNormals) {
   }
 }
 
+// A grid of n x n squares, each with normals of its own and of one of `num_groups` primitives, strips of rows; dome: it bulges.
+AttributedMesh Facets(uint32_t n, float dome, uint32_t num_groups) {
+  std::vector<VertexSoup> soups(num_groups, {{}, {}, {{"NORMAL", AttributeKind::kNormal, 3, {}}}});
+  for (uint32_t i = 0; i < n; ++i) {
+    for (uint32_t j = 0; j < n; ++j) {
+      VertexSoup& soup = soups[i * num_groups / n];
+      const auto first = static_cast<uint32_t>(soup.positions.size());
+      for (uint32_t k = 0; k < 4; ++k) {
+        const float x = static_cast<float>(i + k / 2) / static_cast<float>(n), y = static_cast<float>(j + k % 2) / static_cast<float>(n);
+        soup.positions.push_back({x, y, dome * x * (1 - x) * y * (1 - y)});
+      }
+      soup.triangles.push_back({first, first + 2, first + 3});
+      soup.triangles.push_back({first, first + 3, first + 1});
+      const Vec3f normal = Normalized(Cross(soup.positions[first + 3] - soup.positions[first], soup.positions[first + 1] - soup.positions[first + 2]));
+      const float tilt = 1e-3f * static_cast<float>((i + j) % 2);  // no two neighbors have the same
+      for (uint32_t k = 0; k < 4; ++k) soup.attributes[0].values.insert(soup.attributes[0].values.end(), {normal.x + tilt, normal.y, normal.z});
+    }
+  }
+  return Weld(soups);
+}
+
+TEST(AttributedSimplificationTest, ChartsVanishWhereTheirCurvesAreNear) {
+  constexpr uint32_t kSide = 16;
+  const AttributedMesh flat = Facets(kSide, 0.0f, 1);
+  const AttributedSimplification whole(flat, {kNormal});
+  EXPECT_GE(whole.fewest_triangles(), kSide * kSide);  // a triangle for each chart
+  // Curves come together that are a square apart.
+  constexpr double kSquare = 1.0 / kSide;
+  EXPECT_LT(AttributedSimplification(flat, {kNormal}, {}, 2 * kSquare).fewest_triangles(), kSide * kSide / 4);
+  EXPECT_EQ(AttributedSimplification(flat, {kNormal}, {}, 1e-3 * kSquare).fewest_triangles(), whole.fewest_triangles());
+}
+
+TEST(AttributedSimplificationTest, VanishedChartsLeaveTheShape) {
+  const AttributedMesh dome = Facets(24, 1.5f, 1);
+  double last = 0;
+  for (const double farthest : {0.01, 0.04}) {
+    const AttributedSimplification sequence(dome, {kNormal}, {}, farthest);
+    const AttributedMesh small = sequence.MeshWith(1);
+    EXPECT_LT(small.surface.triangles.size(), farthest > 0.02 ? 300u : 1100u) << farthest;
+    const double error = PositionError(dome, small);
+    EXPECT_LT(error, farthest);
+    EXPECT_GT(error, last);
+    last = error;
+  }
+}
+
+TEST(AttributedSimplificationTest, NoGroupVanishes) {
+  const AttributedMesh mesh = Facets(12, 0.0f, 6);
+  const AttributedMesh small = AttributedSimplification(mesh, {kNormal}, {}, 10.0).MeshWith(1);
+  ASSERT_TRUE(CheckAttributedMesh(small).ok());
+  EXPECT_LT(small.surface.triangles.size(), 60u);
+  for (uint32_t g = 0; g < 6; ++g) EXPECT_GE(std::count(small.groups.begin(), small.groups.end(), g), 1) << g;
+}
+
 TEST(AttributedSimplificationTest, IsTheSameEveryTime) {
   const AttributedMesh mesh = Weld({shapes::Cylinder(30, 10)});
   const AttributedMesh a = AttributedSimplification(mesh, {kTexture, kNormal}).MeshWith(200);
