@@ -177,11 +177,9 @@ bool AttributedSimplifier::KeepsTopology(uint32_t u, uint32_t v) {
     const uint32_t t = corner / 3;
     if (!Has(t, v)) continue;
     ++num_shared;
-    for (const uint32_t w : triangles_[t]) {
-      if (w == u || w == v) continue;
-      if (mark_[w] == across) return false;  // two triangles on the same three vertices
-      mark_[w] = across;
-    }
+    const uint32_t tip = TipOf(t, u, v).vertex;
+    if (mark_[tip] == across) return false;  // two triangles on the same three vertices
+    mark_[tip] = across;
   }
   if (num_shared == 0 || (num_shared == corners_u_.size() && num_shared == corners_v_.size())) return false;
   const auto has_both_across = [&](uint32_t corner, uint32_t end) {
@@ -202,25 +200,26 @@ bool AttributedSimplifier::KeepsTopology(uint32_t u, uint32_t v) {
                       [&](uint32_t corner) { return !Has(corner / 3, v) && has_both_across(corner, u); });
 }
 
-// Of the edges of a triangle but the one from u to v.
-int AttributedSimplifier::CountOtherCurves(uint32_t triangle, uint32_t u, uint32_t v) const {
-  int count = 0;
+AttributedSimplifier::Tip AttributedSimplifier::TipOf(uint32_t triangle, uint32_t u, uint32_t v) const {
+  Tip tip;
   for (size_t k = 0; k < 3; ++k) {
     const uint32_t w = triangles_[triangle][k];
-    count += (w == u || w == v) && (curve_edges_[triangle] >> k & 1) != 0;
+    if (w == u || w == v) {
+      tip.num_curves += curve_edges_[triangle] >> k & 1;
+    } else {
+      tip.vertex = w;
+    }
   }
-  return count;
+  return tip;
 }
 
-// Whether a triangle of the same group lies across another edge of a triangle than the one from u to v.
-bool AttributedSimplifier::HasNeighborOfGroup(uint32_t triangle, uint32_t u, uint32_t v) const {
+// Whether a triangle of the same group lies across another edge of a triangle than the one from u to v, which is opposite to `tip`.
+bool AttributedSimplifier::HasNeighborOfGroup(uint32_t triangle, uint32_t u, uint32_t v, uint32_t tip) const {
   const auto group_of = [&](uint32_t t) { return input_.GroupOf(start_.source_face[t]); };
-  uint32_t apex = u;
-  for (const uint32_t w : triangles_[triangle]) apex = w != u && w != v ? w : apex;
   for (const std::vector<uint32_t>* corners : {&corners_u_, &corners_v_}) {
     for (const uint32_t corner : *corners) {
       const uint32_t t = corner / 3;
-      if (t != triangle && Has(t, apex) && !(Has(t, u) && Has(t, v)) && group_of(t) == group_of(triangle)) return true;
+      if (Has(t, tip) && !(Has(t, u) && Has(t, v)) && group_of(t) == group_of(triangle)) return true;
     }
   }
   return false;
@@ -233,8 +232,10 @@ bool AttributedSimplifier::MayJoinCurves(uint32_t u, uint32_t v, const Vec3d& po
   bool joins = false;
   for (const uint32_t corner : corners_u_) {
     const uint32_t t = corner / 3;
-    if (!Has(t, v) || CountOtherCurves(t, u, v) < 2) continue;
-    if (!HasNeighborOfGroup(t, u, v)) return false;
+    if (!Has(t, v)) continue;
+    const Tip tip = TipOf(t, u, v);
+    if (tip.num_curves < 2) continue;
+    if (!HasNeighborOfGroup(t, u, v, tip.vertex)) return false;
     joins = true;
   }
   if (!joins) return true;
@@ -258,22 +259,14 @@ void AttributedSimplifier::JoinEdges(uint32_t kept, uint32_t removed) {
   for (const uint32_t corner : corners_removed) {
     const uint32_t t = corner / 3;
     if (!Has(t, kept)) continue;
-    uint32_t w = 0;
-    bool is_curve = false;
-    for (size_t k = 0; k < 3; ++k) {
-      if (triangles_[t][k] == kept || triangles_[t][k] == removed) {
-        is_curve = is_curve || (curve_edges_[t] >> k & 1) != 0;
-      } else {
-        w = triangles_[t][k];
-      }
-    }
-    if (!is_curve) continue;
+    const Tip tip = TipOf(t, kept, removed);
+    if (tip.num_curves == 0) continue;
     for (const std::vector<uint32_t>* corners : {&corners_kept, &corners_removed}) {
       for (const uint32_t near : *corners) {
         if (Has(near / 3, kept) && Has(near / 3, removed)) continue;
         for (uint32_t k = 0; k < 3; ++k) {
           const uint32_t x = triangles_[near / 3][k];
-          if (x != w && 3 * (near / 3) + k != near && Has(near / 3, w)) curve_edges_[near / 3] |= static_cast<uint8_t>(1u << k);
+          if (x != tip.vertex && 3 * (near / 3) + k != near && Has(near / 3, tip.vertex)) curve_edges_[near / 3] |= static_cast<uint8_t>(1u << k);
         }
       }
     }

@@ -54,6 +54,12 @@ class AttributedSimplifier {
     Quadric surface, curves;
   };
 
+  // Of a triangle at an edge: its third vertex, and how many of the two edges there are on curves.
+  struct Tip {
+    uint32_t vertex = 0;
+    int num_curves = 0;
+  };
+
   void RememberPlanes();
   void FindQuadrics(uint32_t v);
   Planes PlanesAround(uint32_t v) const;
@@ -64,8 +70,8 @@ class AttributedSimplifier {
   bool MayCollapse(uint32_t u, uint32_t v);
   bool IsCurve(uint32_t u, uint32_t v, const std::vector<uint32_t>& corners_u) const;
   bool KeepsTopology(uint32_t u, uint32_t v);
-  int CountOtherCurves(uint32_t triangle, uint32_t u, uint32_t v) const;
-  bool HasNeighborOfGroup(uint32_t triangle, uint32_t u, uint32_t v) const;
+  Tip TipOf(uint32_t triangle, uint32_t u, uint32_t v) const;
+  bool HasNeighborOfGroup(uint32_t triangle, uint32_t u, uint32_t v, uint32_t tip) const;
   bool MayJoinCurves(uint32_t u, uint32_t v, const Vec3d& position) const;
   void GatherNodes(uint32_t u, uint32_t v);
   void SumNodes();

@@ -15,13 +15,13 @@ class AttributedSimplification {
  public:
   // input: one that CheckAttributedMesh accepts. weights: for each attribute, the distance relative to the bounding box's
   // diagonal that is as bad an error as one unit of the attribute; >= 0. held: for each vertex 1 where nothing may change, else 0; empty: none.
-  //
   // farthest: mesh units, how far vertices may come from the planes that they stand for where a chart vanishes (below), RMS; 0: charts stay.
   //
   // Curves (seams, borders of groups, open borders; wedge_mesh.h) stay what they are: a vertex on one comes together only with its
   // neighbors along it; where the surface had to be cut, vertices stand still. Curves meet where the last triangle between them goes, as of a
-  // chart that is only one triangle wide, if a neighbor of its group takes its place. A vertex that remains goes to where the errors are least, with the values that
-  // are best there; a collapse that turns a triangle over, in space or in the texture, is not made, nor one that changes the topology.
+  // chart that is only one triangle wide, if a neighbor of its group takes its place. A vertex that remains goes to where the errors are
+  // least, with the values that are best there; a collapse that turns a triangle over, in space or in the texture, is not made, nor one that
+  // changes the topology.
   // Deterministic; O(n log n).
   AttributedSimplification(AttributedMesh input, const std::vector<double>& weights, const std::vector<uint8_t>& held = {},
                            double farthest = 0.0);
