@@ -199,7 +199,9 @@ Lattice PositionLattice(const Vec3f& min, const Vec3f& max, int bits) {
 Primitive RoundAttributes(const Primitive& primitive, const DracoPrecision& precision) {
   Primitive rounded = primitive;
   for (Attribute& attribute : rounded.attributes) {
-    if (const Lattice* lattice = LatticeOf(attribute, precision); lattice != nullptr) {
+    if (const auto chosen = precision.values.find(attribute.name); chosen != precision.values.end()) {
+      attribute.data = chosen->second;
+    } else if (const Lattice* lattice = LatticeOf(attribute, precision); lattice != nullptr) {
       const bool is_weights = BeginsWith(attribute.name, "WEIGHTS_");
       attribute.data = is_weights ? RoundKeepingSums(attribute.data, *lattice) : RoundToLattice(attribute.data, *lattice);
     } else if (const int bits = OctahedralBits(attribute, precision); bits > 0) {

@@ -25,6 +25,9 @@ struct DracoPrecision {
   // lattices begin at 0.
   std::map<std::string, Lattice> lattices;
   int normal_bits = 0;  // octahedral, of NORMAL: 2..30; 0: exact
+  // By name: what float attributes become, on the points of these lattices, in the order of the primitive's vertices. Those that are not in here go to the points
+  // next to their values.
+  std::map<std::string, AccessorData> values = {};
 };
 
 // The lattice over a box with steps of its longest side / (2^bits - 1).

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "geometry/for_each_branch.h"
+#include "pack/descents_within.h"
 #include "pack/rounded_attributes.h"
 #include "pack/rounding_forecast.h"
 
@@ -32,6 +33,7 @@ struct Levels {
 
 struct Trial {
   Levels levels;
+  std::vector<double> rounded;  // forecast of what rounding does to each attribute, in the unit of its target
   RoundedFamily family;
   uint64_t bytes = 0;
   bool is_measured = false;
@@ -119,10 +121,10 @@ class FamilyRounder {
       if (trial->met) best = trial;
     }
     if (best == nullptr) return Unsupported("rounding misses the errors at every precision");
-    if (meter_.status().ok()) {
-      LACERTA_ASSIGN_OR_RETURN(best, Coarsened(best));
-    }
-    return Shrunk(std::move(*best));
+    if (!meter_.status().ok()) return Shrunk(std::move(*best));
+    LACERTA_ASSIGN_OR_RETURN(best, Coarsened(best));
+    LACERTA_ASSIGN_OR_RETURN(Trial descended, Descended(*best));
+    return Shrunk(std::move(descended));
   }
 
  private:
@@ -132,11 +134,17 @@ class FamilyRounder {
     return std::max(ratio, errors.attributes[index].rms / targets_.everywhere[index]);
   }
 
+  // What rounding may add to the error of an attribute on these positions, relative to its target and squared.
+  double RoomFor(size_t a, const RoundedPositions& positions) const {
+    const RoundedAttribute& attribute = attributes_[a];
+    const double room = (1.0 - Square(own_attributes_[a])) / correction_.attributes[a] - Square(positions.slides[a] / attribute.target);
+    return attribute.is_shown ? room : std::min(room, PoseRoom() - Square(positions.distance / meter_.error()));
+  }
+
   // The coarsest level at which an attribute is expected to meet its target on these positions; beyond kMostLevel: exact.
   std::optional<int> LevelFor(size_t a, const RoundedPositions& positions) {
     const RoundedAttribute& attribute = attributes_[a];
-    double room = (1.0 - Square(own_attributes_[a])) / correction_.attributes[a] - Square(positions.slides[a] / attribute.target);
-    if (!attribute.is_shown) room = std::min(room, PoseRoom() - Square(positions.distance / meter_.error()));
+    const double room = RoomFor(a, positions);
     if (!(room >= 0.0)) return std::nullopt;
     const auto meets = [&](int level) { return Square(forecast_.Rounded(a, level) / attribute.target) <= room; };
     int low = std::max(attribute.FirstLevel(), least_attributes_[a]) - 1;  // too coarse
@@ -179,6 +187,7 @@ class FamilyRounder {
     constexpr int kMostMeasures = 6;
     constexpr double kWorthwhile = 0.003;  // of the bytes, for a measure
     std::vector<int> strides(1 + attributes_.size(), kLevelsPerBit / 2);  // of positions and every attribute; 0: as coarse as they can be
+    strides[0] = kLevelsPerBit;  // forecasts allow that where it is not the distance that limits them, and then half a bit says little of a whole one
     for (int i = 0; i < kMostMeasures; ++i) {
       Trial* smallest = nullptr;
       size_t changed = 0;
@@ -200,6 +209,61 @@ class FamilyRounder {
       }
     }
     return best;
+  }
+
+  // Moves values to points that take fewer bits, as far as their errors allow: attributes that meet their targets with room to spare do so until there is
+  // none.
+  StatusOr<Trial> Descended(const Trial& best) {
+    constexpr int kMostMeasures = 3;
+    constexpr double kWorthwhile = 0.003;  // of the bytes, for a measure
+    constexpr double kNearer = 0.98;       // than what missed
+    const RoundedPositions& positions = forecast_.Positions(best.levels.positions);
+    std::vector<double> most_errors(attributes_.size(), kInfinity);
+    for (int i = 0; i < kMostMeasures; ++i) {
+      Trial trial = best;
+      trial.errors = {};
+      for (size_t a = 0; a < attributes_.size(); ++a) {
+        if (!indices_[a].has_value() || !attributes_[a].is_shown || best.levels.attributes[a] > kMostLevel) continue;
+        const double room = attributes_[a].target * std::sqrt(std::max(RoomFor(a, positions), 0.0));
+        LACERTA_ASSIGN_OR_RETURN(const std::optional<DescendedValues> descent, SmallestDescent(a, best, positions, std::min(room, most_errors[a])));
+        if (descent.has_value()) SetValues(a, *descent, positions, &trial);
+      }
+      LACERTA_RETURN_IF_ERROR(EncodeRounded(&trial));
+      if (static_cast<double>(trial.bytes) > (1.0 - kWorthwhile) * static_cast<double>(best.bytes)) break;
+      Measure(&trial);
+      if (trial.met) return trial;
+      if (trial.errors.attributes.empty()) break;  // not measured: something else is against it
+      for (size_t a = 0; a < attributes_.size(); ++a) {
+        if (indices_[a].has_value() && Ratio(trial.errors, *indices_[a]) > 1.0) most_errors[a] = kNearer * trial.rounded[a];
+      }
+    }
+    return best;
+  }
+
+  // With what saves most; nothing where nothing does.
+  StatusOr<std::optional<DescendedValues>> SmallestDescent(size_t a, const Trial& best, const RoundedPositions& positions, double most_error) {
+    const std::vector<AccessorData> wanted = forecast_.Fitted(a, best.levels.positions);
+    std::vector<DescendedValues> descents =
+        DescentsWithin(primitives_, positions.moved, attributes_[a], wanted, best.levels.attributes[a], most_error,
+                       [&](const std::vector<AccessorData>& values) { return forecast_.Rounded(a, wanted, values); });
+    uint64_t least = best.bytes;
+    std::optional<DescendedValues> smallest;
+    for (DescendedValues& descent : descents) {
+      Trial trial = best;
+      SetValues(a, descent, positions, &trial);
+      LACERTA_RETURN_IF_ERROR(EncodeRounded(&trial));
+      if (trial.bytes >= least) continue;
+      least = trial.bytes;
+      smallest = std::move(descent);
+    }
+    return smallest;
+  }
+
+  void SetValues(size_t a, const DescendedValues& descent, const RoundedPositions& positions, Trial* trial) {
+    trial->levels.attributes[a] = descent.level;
+    trial->rounded[a] = descent.error;
+    SetAttribute(a, descent.level, positions, &trial->family);
+    for (size_t p = 0; p < descent.values.size(); ++p) SetValues(attributes_[a].parts[p], descent.values[p], &trial->family);
   }
 
   int SmallerStride(size_t k, int stride) const { return k > 0 && attributes_[k - 1].octahedral ? 0 : stride / 2; }
@@ -297,8 +361,15 @@ class FamilyRounder {
         if (attribute.name != "POSITION") family.reports.back().push_back({attribute.name, 0, 0.0, ""});
       }
     }
-    for (size_t a = 0; a < attributes_.size(); ++a) SetAttribute(a, levels.attributes[a], positions, &family);
-    LACERTA_RETURN_IF_ERROR(EncodeMembers(&trial, [&](size_t m) { return EncodeDracoPrimitive(*primitives_[m], family.precisions[m]); }));
+    for (size_t m = 0; m < primitives_.size(); ++m) {
+      if (primitives_[m]->Find("POSITION")->data.type == ComponentType::kFloat) family.precisions[m].values["POSITION"] = MakeFloatAccessor(positions.moved[m]);
+    }
+    for (size_t a = 0; a < attributes_.size(); ++a) {
+      SetAttribute(a, levels.attributes[a], positions, &family);
+      SetFitted(a, levels, &family);
+      trial.rounded.push_back(forecast_.Rounded(a, levels.attributes[a]));
+    }
+    LACERTA_RETURN_IF_ERROR(EncodeRounded(&trial));
     family.error = positions.distance;
     return trial;
   }
@@ -316,6 +387,10 @@ class FamilyRounder {
     if (static_cast<double>(other.bytes) > (1.0 - kWorthwhile) * static_cast<double>(trial.bytes)) return std::move(trial.family);
     Measure(&other);
     return std::move(other.met ? other.family : trial.family);
+  }
+
+  Status EncodeRounded(Trial* trial) const {
+    return EncodeMembers(trial, [&](size_t m) { return EncodeDracoPrimitive(*primitives_[m], trial->family.precisions[m]); });
   }
 
   template <typename EncodeMember>
@@ -348,7 +423,7 @@ class FamilyRounder {
     if (!errors.ok()) return;
     trial->errors = errors.value();
     Report(errors.value(), &trial->family);
-    Correct(errors.value(), levels, forecast_.Positions(levels.positions));
+    Correct(errors.value(), *trial, forecast_.Positions(levels.positions));
     const double exact = WorstExactRatio(errors.value());
     if (exact > 1.0) least_positions_ = std::max(least_positions_, levels.positions + LevelsFiner(exact));
   }
@@ -361,6 +436,18 @@ class FamilyRounder {
       if (!is_rounded) worst = std::max(worst, Ratio(errors, index));
     }
     return worst;
+  }
+
+  // Values go to where positions have slid to.
+  void SetFitted(size_t a, const Levels& levels, RoundedFamily* family) {
+    const RoundedAttribute& attribute = attributes_[a];
+    if (levels.attributes[a] > kMostLevel || !attribute.is_shown) return;
+    std::vector<AccessorData> fitted = forecast_.Fitted(a, levels.positions);
+    for (size_t p = 0; p < fitted.size(); ++p) SetValues(attribute.parts[p], attribute.RoundedAt(fitted[p], attribute.parts[p], levels.attributes[a]), family);
+  }
+
+  void SetValues(const RoundedAttribute::Part& part, AccessorData values, RoundedFamily* family) const {
+    family->precisions[part.member].values[primitives_[part.member]->attributes[part.index].name] = std::move(values);
   }
 
   void SetAttribute(size_t a, int level, const RoundedPositions& positions, RoundedFamily* family) {
@@ -406,7 +493,8 @@ class FamilyRounder {
   }
 
   // What was measured takes the place of what was expected.
-  void Correct(const SurfaceErrors& errors, const Levels& levels, const RoundedPositions& positions) {
+  void Correct(const SurfaceErrors& errors, const Trial& trial, const RoundedPositions& positions) {
+    const Levels& levels = trial.levels;
     const auto corrected = [](double measured, double own, double expected) {
       constexpr double kLeast = 0.2, kTiny = 1e-6;
       // Never quite as small as measured: what seems to add nothing is below the precision of the measure.
@@ -423,13 +511,13 @@ class FamilyRounder {
     if (poses_.has_value()) {
       double expected = Square(positions.distance / targets_.distance);
       for (size_t a = 0; a < attributes_.size(); ++a) {
-        if (!attributes_[a].is_shown) expected += Square(forecast_.Rounded(a, levels.attributes[a]) / attributes_[a].target);
+        if (!attributes_[a].is_shown) expected += Square(trial.rounded[a] / attributes_[a].target);
       }
       correction_.poses = corrected(Ratio(errors, *poses_), own_poses_, std::sqrt(expected));
     }
     for (size_t a = 0; a < attributes_.size(); ++a) {
       if (!indices_[a].has_value()) continue;
-      const double rounded = forecast_.Rounded(a, levels.attributes[a]) / attributes_[a].target;
+      const double rounded = trial.rounded[a] / attributes_[a].target;
       const double expected = std::hypot(rounded, positions.slides[a] / attributes_[a].target);
       const double measured = Ratio(errors, *indices_[a]);
       if (measured > std::max(1.0, kUnforeseen * expected)) {

@@ -71,8 +71,7 @@ Lattice RoundedAttribute::LatticeAt(const Part& part, int level) const {
   return LatticeOfStep(from_zero, 1.0f / std::max(1.0f, std::round(1.0f / step)));  // 1 is a lattice point
 }
 
-AccessorData RoundedAttribute::RoundedAt(const Primitive& member, const Part& part, int level) const {
-  const AccessorData& data = member.attributes[part.index].data;
+AccessorData RoundedAttribute::RoundedAt(const AccessorData& data, const Part& part, int level) const {
   if (level > kMostLevel) return data;
   if (octahedral) return RoundOctahedral(data, BitsAtOrAbove(level));
   return is_shown ? RoundToLattice(data, LatticeAt(part, level)) : RoundKeepingSums(data, LatticeAt(part, level));

@@ -39,7 +39,7 @@ struct RoundedAttribute {
   int FirstLevel() const;
   int AtOrAbove(int level) const;  // octahedral coding comes in whole bits
   Lattice LatticeAt(const Part& part, int level) const;  // of what is not octahedral
-  AccessorData RoundedAt(const Primitive& member, const Part& part, int level) const;  // as a decoder returns it
+  AccessorData RoundedAt(const AccessorData& values, const Part& part, int level) const;  // values of a part as a decoder returns them
 };
 
 // by_name: targets of colors and application attributes, the length of a difference. Attributes that nobody gave a tolerance for (JOINTS, others

@@ -4,11 +4,13 @@
 #define LACERTA_PACK_ROUNDING_FORECAST_H_
 
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "document/primitive.h"
 #include "lacerta/mesh.h"
+#include "pack/position_descent.h"
 #include "pack/rounded_attributes.h"
 
 namespace lacerta {
@@ -16,9 +18,10 @@ namespace lacerta {
 // Positions of a family rounded to one lattice.
 struct RoundedPositions {
   Lattice lattice;
+  std::vector<std::vector<Vec3f>> moved;  // of each primitive
   double distance = 0.0;       // RMS over the surface of how far it moves along its normals
   double flipped = 0.0;        // share of its area that looks to the other side
-  std::vector<double> slides;  // for each attribute the RMS by which its values slide along, as `Rounded`
+  std::vector<double> slides;  // for each attribute the RMS by which its values slide along, once they are fitted to that, as `Rounded`
 };
 
 class RoundingForecast {
@@ -29,10 +32,17 @@ class RoundingForecast {
   // Lattice over the box of all positions in steps of its longest side / 2^(level / kLevelsPerBit); level >= 1.
   const RoundedPositions& Positions(int level);
 
+  // Of each part of an attribute the values fitted to where Positions(level) are, not rounded.
+  std::vector<AccessorData> Fitted(size_t attribute, int level);
+
   // RMS of an attribute rounded at a level, in the unit of its target, over the 99 % of the surface where it is least;
   // of other than texture coordinates and directions over all of it. 0 beyond kMostLevel.
   double Rounded(size_t attribute, int level) { return ErrorsOf(attribute, level).rms; }
-  // The same of the triangle where it is most.
+  // The same of an attribute whose parts become `rounded` where they should be `values`.
+  double Rounded(size_t attribute, const std::vector<AccessorData>& values, const std::vector<AccessorData>& rounded) const {
+    return ErrorsOf(attribute, values, rounded).rms;
+  }
+  // At a level, of the triangle where it is most.
   double MostRounded(size_t attribute, int level) { return ErrorsOf(attribute, level).most; }
 
   // The level at which a step moves positions by about `error`.
@@ -43,12 +53,13 @@ class RoundingForecast {
     double rms = 0.0, most = 0.0;
   };
   const Errors& ErrorsOf(size_t attribute, int level);
+  Errors ErrorsOf(size_t attribute, const std::vector<AccessorData>& values, const std::vector<AccessorData>& rounded) const;
   static Errors ErrorsOf(const RoundedAttribute& attribute, std::vector<std::pair<double, double>>* squares);
-  double SlideOf(const RoundedAttribute& attribute, const std::vector<std::vector<Vec3f>>& moved) const;
 
   const std::vector<const Primitive*>& primitives_;
   const std::vector<RoundedAttribute>& attributes_;
   std::vector<TriangleMesh> surfaces_;  // of the primitives
+  std::optional<PositionDescent> descent_;
   Lattice box_;
   bool has_area_ = false;
   std::map<int, RoundedPositions> positions_;

@@ -21,7 +21,7 @@ Bytes BumpyArm(bool halved) {
   for (Vec3f& p : arm.soup.positions) {
     const float angle = std::atan2(p.y, p.x);
     const float scale =
-        1 + 0.1f * std::sin(p.z) + 0.03f * std::sin(5 * angle + 2 * p.z) + 0.02f * std::sin(9 * angle - 7 * p.z);
+        1 + 0.1f * std::sin(p.z) + 0.04f * std::sin(5 * angle + 2 * p.z) + 0.02f * std::sin(8 * angle - 6 * p.z);
     p = {p.x * scale, p.y * scale, p.z};
   }
   testing::DropNormals(&arm.soup);

@@ -180,12 +180,16 @@ shapes::SkinnedSoup WithNoisyWedges(const shapes::SkinnedSoup& skinned) {
 }
 
 TEST(Skin, NoiseBetweenWedgesIsNoSeam) {
-  const Bytes noisy = SkinnedCylinderAsset(WithNoisyWedges(shapes::SkinnedCylinder(48, 104)), 60.0);
-  const PackResult packed = Pack(noisy);
-  const uint64_t bytes = packed.report.primitives[0].bytes_after, wanted = PackedBentCylinder().report.primitives[0].bytes_after;
+  uint64_t bytes = 0, wanted = 0;  // of more than one bend: what share of the error goes to weights is a matter of chance
+  for (const double bend : {60.0, 30.0, 90.0}) {
+    const Bytes noisy = SkinnedCylinderAsset(WithNoisyWedges(shapes::SkinnedCylinder(48, 52)), bend);
+    const PackResult packed = Pack(noisy);
+    bytes += packed.report.primitives[0].bytes_after;
+    wanted += Pack(SkinnedCylinderAsset(shapes::SkinnedCylinder(48, 52), bend)).report.primitives[0].bytes_after;
+    EXPECT_GT(WorstPsnr(noisy, Unpacked(packed)), 69.9);
+  }
   EXPECT_LT(100 * bytes, 110 * wanted) << bytes << " / " << wanted;
   EXPECT_GT(100 * bytes, 90 * wanted) << bytes << " / " << wanted;
-  EXPECT_GT(WorstPsnr(noisy, Unpacked(packed)), 69.9);
 }
 
 // Adds a second arm: the same mesh by a skin of its own, whose joints the animation turns about another axis.
