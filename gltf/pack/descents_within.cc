@@ -67,6 +67,7 @@ std::vector<DescendedValues> DescentsWithin(const std::vector<const Primitive*>&
     }
   });
   std::vector<DescendedValues> kept;
+  kept.reserve(promising.size());
   for (const size_t i : promising) kept.push_back(std::move(results[i]));
   return kept;
 }

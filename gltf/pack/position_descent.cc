@@ -13,7 +13,7 @@
 namespace lacerta {
 namespace {
 
-constexpr uint32_t kAxes = 3;
+constexpr size_t kAxes = 3;
 
 ValueWedges Joined(const std::vector<TriangleMesh>& surfaces) {
   std::vector<float> rows;
@@ -26,7 +26,8 @@ ValueWedges Joined(const std::vector<TriangleMesh>& surfaces) {
   for (uint32_t v = 0; v < first.size(); ++v) {
     if (first[v] == v) {
       wedges.of_vertex[v] = static_cast<uint32_t>(wedges.size());
-      wedges.positions.push_back({rows[kAxes * v], rows[kAxes * v + 1], rows[kAxes * v + 2]});
+      const float* const row = rows.data() + kAxes * v;
+      wedges.positions.push_back({row[0], row[1], row[2]});
     } else {
       wedges.of_vertex[v] = wedges.of_vertex[first[v]];
     }
@@ -70,7 +71,7 @@ PositionDescent::PositionDescent(const std::vector<TriangleMesh>& surfaces) : we
 std::vector<std::vector<Vec3f>> PositionDescent::On(const Lattice& lattice) const {
   constexpr int kSweeps = 3;
   constexpr double kSlope = 0.02;  // what a bit of a vertex is worth, in squared steps
-  const LatticeNumbers numbers(lattice, kAxes, false);
+  const LatticeNumbers numbers(lattice, static_cast<uint32_t>(kAxes), false);
   Vertices vertices;
   for (const Vec3d& position : wedges_.positions) {
     vertices.points.push_back(numbers.Nearest({position.x, position.y, position.z, 0.0}));
@@ -127,7 +128,7 @@ void PositionDescent::Move(size_t w, const LatticeNumbers& lattice, double slope
   LatticePoint best = now;
   Vec3d best_move = vertices->moves[w];
   double least = std::numeric_limits<double>::infinity();
-  ForEachNear(now, kAxes, 1, [&](const LatticePoint& point) {
+  ForEachNear(now, static_cast<uint32_t>(kAxes), 1, [&](const LatticePoint& point) {
     const std::optional<AttributeValue> value = lattice.At(point);
     if (!value.has_value()) return;
     const Vec3d move = Vec3d{(*value)[0], (*value)[1], (*value)[2]} - wedges_.positions[w];

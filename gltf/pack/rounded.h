@@ -29,7 +29,7 @@ struct RoundedFamily {
 // these. All get one lattice of positions and one step for each attribute. Which is cheapest is forecast triangle by
 // triangle, counting that rounded positions slide along the surface and take texture and normals with them; then what is
 // decoded is measured and the forecast corrected, until it meets the meter's targets (and `everywhere` as in
-// ErrorTargets) and no cheaper precision is expected to. What cannot be measured (no area) is held to the forecast. Where
+// ErrorTargets) and no cheaper precision is expected to; in the end attributes use up what room their errors have (DescentsWithin). What cannot be measured (no area) is held to the forecast. Where
 // `is_usable` refuses what came out, positions get finer.
 // Fails with kUnsupported where no precision meets them or what does is expected to take far more than `most_bytes`, and like
 // EncodeDracoPrimitive.
