@@ -57,51 +57,36 @@ Wedges WedgesOf(const std::vector<const Primitive*>& primitives, const std::vect
   return wedges;
 }
 
-}  // namespace
+using Corners = std::array<Corner, 3>;
 
-SlideFit FitToSlides(const std::vector<const Primitive*>& primitives, const std::vector<TriangleMesh>& surfaces, const RoundedAttribute& attribute,
-                     const std::vector<std::vector<Vec3f>>& moved) {
-  constexpr int kSweeps = 6;  // of Gauss-Seidel; a mass matrix needs few
-  const Wedges wedges = WedgesOf(primitives, surfaces, attribute);
-  std::vector<std::array<Corner, 3>> triangles;
-  std::vector<double> areas;
-  size_t first_row = 0;
-  for (const RoundedAttribute::Part& part : attribute.parts) {
-    const TriangleMesh& surface = surfaces[part.member];
-    for (const Triangle& t : surface.triangles) {
-      const Vec3d a = Vec3Cast<double>(surface.positions[t[0]]);
-      const Vec3d u = Vec3Cast<double>(surface.positions[t[1]]) - a, v = Vec3Cast<double>(surface.positions[t[2]]) - a;
-      const double area = 0.5 * Norm(Cross(u, v));
-      if (!(area > 0.0)) continue;
-      std::array<Corner, 3> corners;
-      for (size_t k = 0; k < 3; ++k) corners[k].wedge = wedges.of_row[first_row + t[k]];
-      const AttributeValue& value = wedges.values[corners[0].wedge];
-      const AttributeValue along_u = wedges.values[corners[1].wedge] - value, along_v = wedges.values[corners[2].wedge] - value;
-      for (size_t k = 0; k < 3; ++k) {
-        const auto [p, q] = Within(u, v, Vec3Cast<double>(moved[part.member][t[k]]) - Vec3Cast<double>(surface.positions[t[k]]));
-        corners[k].slide = p * along_u + q * along_v;
-      }
-      triangles.push_back(corners);
-      areas.push_back(area);
-    }
-    first_row += surface.positions.size();
+// Corners of a triangle (u and v are two edges from the first) whose vertices moved like that.
+Corners CornersOf(const std::array<uint32_t, 3>& wedges, const std::vector<AttributeValue>& values, const Vec3d& u, const Vec3d& v, const std::array<Vec3d, 3>& moves) {
+  Corners corners;
+  const AttributeValue along_u = values[wedges[1]] - values[wedges[0]], along_v = values[wedges[2]] - values[wedges[0]];
+  for (size_t k = 0; k < 3; ++k) {
+    const auto [p, q] = Within(u, v, moves[k]);
+    corners[k] = {wedges[k], p * along_u + q * along_v};
   }
+  return corners;
+}
 
-  // What each value changes by: e = change - slide is linear on every triangle.
-  std::vector<AttributeValue> changes(wedges.values.size());
-  std::vector<uint32_t> first(wedges.values.size() + 1, 0), around(3 * triangles.size());
-  for (const std::array<Corner, 3>& corners : triangles) {
+// By how much each value changes so that the squares of change - slide, linear on every triangle, are least.
+std::vector<AttributeValue> LeastSquares(const std::vector<Corners>& triangles, const std::vector<double>& areas, size_t num_wedges) {
+  constexpr int kSweeps = 6;  // of Gauss-Seidel; a mass matrix needs few
+  std::vector<uint32_t> first(num_wedges + 1, 0), around(3 * triangles.size());
+  for (const Corners& corners : triangles) {
     for (const Corner& corner : corners) ++first[corner.wedge + 1];
   }
-  for (size_t w = 0; w < changes.size(); ++w) first[w + 1] += first[w];
+  for (size_t w = 0; w < num_wedges; ++w) first[w + 1] += first[w];
   std::vector<uint32_t> next = first;
   for (uint32_t i = 0; i < around.size(); ++i) around[next[triangles[i / 3][i % 3].wedge]++] = i;
+  std::vector<AttributeValue> changes(num_wedges);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (size_t w = 0; w < changes.size(); ++w) {
+    for (size_t w = 0; w < num_wedges; ++w) {
       AttributeValue sum = {};
       double weight = 0.0;
       for (uint32_t i = first[w]; i < first[w + 1]; ++i) {
-        const std::array<Corner, 3>& corners = triangles[around[i] / 3];
+        const Corners& corners = triangles[around[i] / 3];
         const Corner &own = corners[around[i] % 3], &a = corners[(around[i] + 1) % 3], &b = corners[(around[i] + 2) % 3];
         const double area = areas[around[i] / 3];
         sum = sum + area * (2.0 * own.slide - (changes[a.wedge] - a.slide) - (changes[b.wedge] - b.slide));
@@ -110,6 +95,36 @@ SlideFit FitToSlides(const std::vector<const Primitive*>& primitives, const std:
       if (weight > 0.0) changes[w] = (1.0 / weight) * sum;
     }
   }
+  return changes;
+}
+
+}  // namespace
+
+SlideFit FitToSlides(const std::vector<const Primitive*>& primitives, const std::vector<TriangleMesh>& surfaces, const RoundedAttribute& attribute,
+                     const std::vector<std::vector<Vec3f>>& moved) {
+  const Wedges wedges = WedgesOf(primitives, surfaces, attribute);
+  std::vector<Corners> triangles;
+  std::vector<double> areas;
+  size_t first_row = 0;
+  for (const RoundedAttribute::Part& part : attribute.parts) {
+    const TriangleMesh& surface = surfaces[part.member];
+    for (const Triangle& t : surface.triangles) {
+      std::array<Vec3d, 3> at, moves;
+      std::array<uint32_t, 3> of_corners;
+      for (size_t k = 0; k < 3; ++k) {
+        at[k] = Vec3Cast<double>(surface.positions[t[k]]);
+        moves[k] = Vec3Cast<double>(moved[part.member][t[k]]) - at[k];
+        of_corners[k] = wedges.of_row[first_row + t[k]];
+      }
+      const Vec3d u = at[1] - at[0], v = at[2] - at[0];
+      const double area = 0.5 * Norm(Cross(u, v));
+      if (!(area > 0.0)) continue;
+      triangles.push_back(CornersOf(of_corners, wedges.values, u, v, moves));
+      areas.push_back(area);
+    }
+    first_row += surface.positions.size();
+  }
+  const std::vector<AttributeValue> changes = LeastSquares(triangles, areas, wedges.values.size());
 
   SlideFit fit;
   for (size_t t = 0; t < triangles.size(); ++t) {
@@ -122,8 +137,7 @@ SlideFit FitToSlides(const std::vector<const Primitive*>& primitives, const std:
     AccessorData data = primitives[part.member]->attributes[part.index].data;
     for (uint64_t v = 0; v < data.count; ++v) {
       const uint32_t w = wedges.of_row[first_row + v];
-      const AttributeValue value = wedges.values[w] + changes[w];
-      if (changes[w] != AttributeValue{}) StoreValue(value, attribute.direction ? 3 : data.components, v, &data);
+      if (changes[w] != AttributeValue{}) StoreValue(wedges.values[w] + changes[w], attribute.direction ? 3 : data.components, v, &data);
     }
     first_row += data.count;
     fit.values.push_back(std::move(data));
