@@ -44,6 +44,27 @@ std::vector<uint32_t> FirstEqualRow(Span<const T> table, size_t columns) {
   return first;
 }
 
+struct DistinctRows {
+  std::vector<uint32_t> of_row;  // the number of each row: equal ones have the same
+  std::vector<uint32_t> rows;    // of each number the first row that has it, ascending
+};
+
+// Numbers the rows as FirstEqualRow tells them apart.
+template <typename T>
+DistinctRows NumberRows(Span<const T> table, size_t columns) {
+  DistinctRows result{FirstEqualRow(table, columns), {}};
+  for (uint32_t row = 0; row < result.of_row.size(); ++row) {
+    uint32_t& number = result.of_row[row];
+    if (number != row) {
+      number = result.of_row[number];  // the first one is numbered by now
+    } else {
+      number = static_cast<uint32_t>(result.rows.size());
+      result.rows.push_back(row);
+    }
+  }
+  return result;
+}
+
 }  // namespace lacerta
 
 #endif  // LACERTA_GEOMETRY_EQUAL_ROWS_H_

@@ -9,17 +9,8 @@ namespace {
 // rows: one array of vertices for each number.
 template <size_t N>
 ByVertex Invert(const std::vector<std::array<uint32_t, N>>& rows, size_t num_vertices) {
-  ByVertex result;
-  result.first.assign(num_vertices + 1, 0);
-  for (const auto& row : rows) {
-    for (const uint32_t v : row) ++result.first[v + 1];
-  }
-  for (size_t v = 0; v < num_vertices; ++v) result.first[v + 1] += result.first[v];
-  result.items.resize(N * rows.size());
-  std::vector<uint32_t> next(result.first.begin(), result.first.end() - 1);
-  for (uint32_t i = 0; i < rows.size(); ++i) {
-    for (const uint32_t v : rows[i]) result.items[next[v]++] = i;
-  }
+  ByVertex result = PlacesByVertex(rows, num_vertices);
+  for (uint32_t& item : result.items) item /= N;
   return result;
 }
 

@@ -6,17 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/by_vertex.h"
 #include "lacerta/mesh.h"
 
 namespace lacerta {
-
-// Lists of numbers by vertex: those of v are items[first[v]] .. items[first[v + 1] - 1].
-struct ByVertex {
-  std::vector<uint32_t> first;  // #V + 1
-  std::vector<uint32_t> items;
-
-  Span<const uint32_t> operator[](uint32_t v) const { return {items.data() + first[v], first[v + 1] - first[v]}; }
-};
 
 struct MeshNeighbors {
   // mesh: no triangle with a repeated vertex; else anything.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "geometry/equal_rows.h"
 #include "pack/for_each_near.h"
@@ -20,24 +22,16 @@ ValueWedges Joined(const std::vector<TriangleMesh>& surfaces) {
   for (const TriangleMesh& surface : surfaces) {
     for (const Vec3f& position : surface.positions) rows.insert(rows.end(), {position.x, position.y, position.z});
   }
-  const std::vector<uint32_t> first = FirstEqualRow(Span<const float>(rows), kAxes);
+  DistinctRows distinct = NumberRows(Span<const float>(rows), kAxes);
   ValueWedges wedges;
-  wedges.of_vertex.resize(first.size());
-  for (uint32_t v = 0; v < first.size(); ++v) {
-    if (first[v] == v) {
-      wedges.of_vertex[v] = static_cast<uint32_t>(wedges.size());
-      const float* const row = rows.data() + kAxes * v;
-      wedges.positions.push_back({row[0], row[1], row[2]});
-    } else {
-      wedges.of_vertex[v] = wedges.of_vertex[first[v]];
-    }
-  }
+  for (const size_t v : distinct.rows) wedges.positions.push_back({rows[kAxes * v], rows[kAxes * v + 1], rows[kAxes * v + 2]});
+  wedges.of_vertex = std::move(distinct.of_row);
   uint32_t base = 0;
   for (const TriangleMesh& surface : surfaces) {
     for (const Triangle& t : surface.triangles) AddTriangle({wedges.of_vertex[base + t[0]], wedges.of_vertex[base + t[1]], wedges.of_vertex[base + t[2]]}, surface, t, &wedges);
     base += static_cast<uint32_t>(surface.positions.size());
   }
-  FindCorners(&wedges);
+  wedges.corners = PlacesByVertex(wedges.triangles, wedges.size());
   return wedges;
 }
 
@@ -117,8 +111,8 @@ void PositionDescent::Move(size_t w, const LatticeNumbers& lattice, double slope
     bool is_turned;
   };
   std::vector<Side> sides;
-  for (uint32_t i = wedges_.first_corner[w]; i < wedges_.first_corner[w + 1]; ++i) {
-    const uint32_t triangle = wedges_.corners[i] / 3, corner = wedges_.corners[i] % 3;
+  for (const uint32_t place : wedges_.corners[w]) {
+    const uint32_t triangle = place / 3, corner = place % 3;
     const std::array<uint32_t, 3>& t = wedges_.triangles[triangle];
     const Vec3d& normal = normals_[triangle];
     const double others = Dot(normal, vertices->moves[t[(corner + 1) % 3]] + vertices->moves[t[(corner + 2) % 3]]);

@@ -242,7 +242,7 @@ class FamilyRounder {
 
   // With what saves most; nothing where nothing does.
   StatusOr<std::optional<DescendedValues>> SmallestDescent(size_t a, const Trial& best, const RoundedPositions& positions, double most_error) {
-    const std::vector<AccessorData> wanted = forecast_.Fitted(a, best.levels.positions);
+    const std::vector<AccessorData>& wanted = forecast_.Fitted(a, best.levels.positions);
     std::vector<DescendedValues> descents =
         DescentsWithin(primitives_, positions.moved, attributes_[a], wanted, best.levels.attributes[a], most_error,
                        [&](const std::vector<AccessorData>& values) { return forecast_.Rounded(a, wanted, values); });
@@ -442,7 +442,7 @@ class FamilyRounder {
   void SetFitted(size_t a, const Levels& levels, RoundedFamily* family) {
     const RoundedAttribute& attribute = attributes_[a];
     if (levels.attributes[a] > kMostLevel || !attribute.is_shown) return;
-    std::vector<AccessorData> fitted = forecast_.Fitted(a, levels.positions);
+    const std::vector<AccessorData>& fitted = forecast_.Fitted(a, levels.positions);
     for (size_t p = 0; p < fitted.size(); ++p) SetValues(attribute.parts[p], attribute.RoundedAt(fitted[p], attribute.parts[p], levels.attributes[a]), family);
   }
 

@@ -6,6 +6,7 @@
 
 #include "geometry/for_each_branch.h"
 #include "geometry/value_difference.h"
+#include "geometry/vertex_area_vectors.h"
 #include "pack/attribute_value.h"
 #include "pack/slide_fit.h"
 
@@ -17,11 +18,6 @@ std::vector<AttributeValue> ValuesOf(const AccessorData& data, bool direction) {
   values.reserve(static_cast<size_t>(data.count));
   for (uint64_t i = 0; i < data.count; ++i) values.push_back(ValueAt(data, i, direction));
   return values;
-}
-
-Vec3d AreaOf(const TriangleMesh& mesh, const Triangle& t) {
-  const Vec3d a = Vec3Cast<double>(mesh.positions[t[0]]);
-  return Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a) * 0.5;
 }
 
 }  // namespace
@@ -41,7 +37,7 @@ RoundingForecast::RoundingForecast(const std::vector<const Primitive*>& primitiv
       is_first = false;
     }
     for (const Triangle& t : surfaces_.back().triangles) {
-      has_area_ = has_area_ || Norm(AreaOf(surfaces_.back(), t)) > 0.0;
+      has_area_ = has_area_ || Norm(AreaVector(surfaces_.back().positions, t)) > 0.0;
     }
   }
   box_ = PositionLattice(min, max, 1);
@@ -64,7 +60,7 @@ const RoundedPositions& RoundingForecast::Positions(int level) {
   double squares = 0.0, area_sum = 0.0, flipped = 0.0;
   for (size_t m = 0; m < surfaces_.size(); ++m) {
     for (const Triangle& t : surfaces_[m].triangles) {
-      const Vec3d before = AreaOf(surfaces_[m], t);
+      const Vec3d before = AreaVector(surfaces_[m].positions, t);
       const double area = has_area_ ? Norm(before) : 1.0;
       AttributeValue along[3];
       for (size_t i = 0; i < 3; ++i) {
@@ -73,9 +69,7 @@ const RoundedPositions& RoundingForecast::Positions(int level) {
       }
       squares += area * MeanSquare(along[0], along[1], along[2]);
       area_sum += area;
-      const Vec3d u = Vec3Cast<double>(moved[m][t[1]]) - Vec3Cast<double>(moved[m][t[0]]);
-      const Vec3d v = Vec3Cast<double>(moved[m][t[2]]) - Vec3Cast<double>(moved[m][t[0]]);
-      if (lacerta::Dot(before, Cross(u, v)) < 0.0) flipped += area;
+      if (lacerta::Dot(before, AreaVector(moved[m], t)) < 0.0) flipped += area;
     }
   }
   result.distance = area_sum > 0.0 ? std::sqrt(squares / area_sum) : 0.0;
@@ -89,12 +83,13 @@ const RoundedPositions& RoundingForecast::Positions(int level) {
   return positions_.emplace(level, std::move(result)).first->second;
 }
 
-std::vector<AccessorData> RoundingForecast::Fitted(size_t index, int level) {
+const std::vector<AccessorData>& RoundingForecast::Fitted(size_t index, int level) {
+  const auto [known, is_new] = fitted_.emplace(std::make_pair(index, level), std::vector<AccessorData>());
+  if (!is_new) return known->second;
   const RoundedAttribute& attribute = attributes_[index];
-  if (has_area_ && attribute.is_shown) return FitToSlides(primitives_, surfaces_, attribute, Positions(level).moved).values;
-  std::vector<AccessorData> values;
-  for (const RoundedAttribute::Part& part : attribute.parts) values.push_back(primitives_[part.member]->attributes[part.index].data);
-  return values;
+  if (has_area_ && attribute.is_shown) return known->second = FitToSlides(primitives_, surfaces_, attribute, Positions(level).moved).values;
+  for (const RoundedAttribute::Part& part : attribute.parts) known->second.push_back(primitives_[part.member]->attributes[part.index].data);
+  return known->second;
 }
 
 const RoundingForecast::Errors& RoundingForecast::ErrorsOf(size_t index, int level) {
@@ -121,7 +116,7 @@ RoundingForecast::Errors RoundingForecast::ErrorsOf(size_t index, const std::vec
     }
     const TriangleMesh& surface = surfaces_[part.member];
     for (const Triangle& t : surface.triangles) {
-      const double area = has_area_ ? Norm(AreaOf(surface, t)) : 1.0;
+      const double area = has_area_ ? Norm(AreaVector(surface.positions, t)) : 1.0;
       squares.emplace_back(MeanSquare(errors[t[0]], errors[t[1]], errors[t[2]]), area);
     }
   }

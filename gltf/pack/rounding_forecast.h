@@ -33,7 +33,7 @@ class RoundingForecast {
   const RoundedPositions& Positions(int level);
 
   // Of each part of an attribute the values fitted to where Positions(level) are, not rounded.
-  std::vector<AccessorData> Fitted(size_t attribute, int level);
+  const std::vector<AccessorData>& Fitted(size_t attribute, int level);
 
   // RMS of an attribute rounded at a level, in the unit of its target, over the 99 % of the surface where it is least;
   // of other than texture coordinates and directions over all of it. 0 beyond kMostLevel.
@@ -63,6 +63,7 @@ class RoundingForecast {
   Lattice box_;
   bool has_area_ = false;
   std::map<int, RoundedPositions> positions_;
+  std::map<std::pair<size_t, int>, std::vector<AccessorData>> fitted_;
   std::map<std::pair<size_t, int>, Errors> rounded_;
 };
 

@@ -36,8 +36,7 @@ struct Surroundings {
 Surroundings SurroundingsOf(const ValueWedges& wedges, const Moving& moving, size_t w) {
   constexpr double kCorners = 6.0;
   Surroundings result;
-  for (uint32_t i = wedges.first_corner[w]; i < wedges.first_corner[w + 1]; ++i) {
-    const uint32_t corner = wedges.corners[i];
+  for (const uint32_t corner : wedges.corners[w]) {
     const std::array<uint32_t, 3>& t = wedges.triangles[corner / 3];
     const double share = wedges.areas[corner / 3] / kCorners;
     result.pull = result.pull + share * (moving.errors[t[(corner + 1) % 3]] + moving.errors[t[(corner + 2) % 3]]);
@@ -50,8 +49,7 @@ Surroundings SurroundingsOf(const ValueWedges& wedges, const Moving& moving, siz
 class Facing {
  public:
   Facing(const ValueWedges& wedges, const Moving& moving, size_t w) {
-    for (uint32_t i = wedges.first_corner[w]; i < wedges.first_corner[w + 1]; ++i) {
-      const uint32_t corner = wedges.corners[i];
+    for (const uint32_t corner : wedges.corners[w]) {
       const std::array<uint32_t, 3>& t = wedges.triangles[corner / 3];
       const Vec3d area = Cross(wedges.positions[t[1]] - wedges.positions[t[0]], wedges.positions[t[2]] - wedges.positions[t[0]]);
       AttributeValue others = {};

@@ -159,8 +159,8 @@ class TexturePrediction {
 
   double Bits(size_t wedge, const LatticePoint& point, const std::vector<LatticePoint>& points, const ResidualCosts& costs) const {
     double bits = 0.0;
-    for (uint32_t i = wedges_.first_corner[wedge]; i < wedges_.first_corner[wedge + 1]; ++i) {
-      const uint32_t corner = wedges_.corners[i], first = corner - corner % 3;
+    for (const uint32_t corner : wedges_.corners[wedge]) {
+      const uint32_t first = corner - corner % 3;
       const std::array<uint32_t, 3>& t = wedges_.triangles[corner / 3];
       std::array<const LatticePoint*, 3> at;
       for (size_t k = 0; k < 3; ++k) at[k] = t[k] == wedge ? &point : &points[t[k]];
@@ -213,14 +213,7 @@ class FlapPrediction {
       const HalfEdge &a = edges[i - 1], &b = edges[i];
       if (a.low == b.low && a.high == b.high && a.is_reversed != b.is_reversed) flaps_.push_back({a.tip, b.tip, a.low, a.high});
     }
-    first_.assign(wedges.size() + 1, 0);
-    for (const std::array<uint32_t, 4>& flap : flaps_) {
-      for (const uint32_t w : flap) ++first_[w + 1];
-    }
-    for (size_t w = 0; w < wedges.size(); ++w) first_[w + 1] += first_[w];
-    std::vector<uint32_t> next = first_;
-    places_.resize(4 * flaps_.size());
-    for (uint32_t place = 0; place < places_.size(); ++place) places_[next[flaps_[place / 4][place % 4]]++] = place;
+    places_ = PlacesByVertex(flaps_, wedges.size());
     weight_ = std::min(1.0, static_cast<double>(wedges.size()) / std::max(1.0, static_cast<double>(flaps_.size())));
   }
 
@@ -236,9 +229,9 @@ class FlapPrediction {
 
   double Bits(size_t wedge, const LatticePoint& point, const std::vector<LatticePoint>& points, const ResidualCosts& costs) const {
     double bits = 0.0;
-    for (uint32_t i = first_[wedge]; i < first_[wedge + 1]; ++i) {
-      const std::array<uint32_t, 4>& flap = flaps_[places_[i] / 4];
-      const int32_t sign = places_[i] % 4 < 2 ? 1 : -1;
+    for (const uint32_t place : places_[wedge]) {
+      const std::array<uint32_t, 4>& flap = flaps_[place / 4];
+      const int32_t sign = place % 4 < 2 ? 1 : -1;
       for (const uint32_t c : coordinates_) bits += costs(ResidualOf(flap, c, points) + sign * (point[c] - points[wedge][c]));
     }
     return weight_ * bits;
@@ -260,8 +253,8 @@ class FlapPrediction {
 
   std::vector<uint32_t> coordinates_;
   std::vector<std::array<uint32_t, 4>> flaps_;  // two tips, two ends of an edge
-  std::vector<uint32_t> first_, places_;        // of wedge w: places_[first_[w]] .. places_[first_[w + 1] - 1], 4 * flap + which of the four
-  double weight_ = 0.0;  // of one flap
+  ByVertex places_;                             // of each wedge: 4 * flap + which of the four
+  double weight_ = 0.0;                         // of one flap
 };
 
 }  // namespace lacerta

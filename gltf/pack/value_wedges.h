@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "document/primitive.h"
+#include "geometry/by_vertex.h"
 #include "pack/attribute_value.h"
 
 namespace lacerta {
@@ -15,21 +16,17 @@ namespace lacerta {
 // Vertices that agree in their rounded position and value are one wedge, as they are to stock Draco.
 struct ValueWedges {
   std::vector<uint32_t> of_vertex;
-  std::vector<Vec3d> positions;                   // of each wedge, rounded
+  std::vector<Vec3d> positions;                    // of each wedge, rounded
   std::vector<AttributeValue> wanted;
   std::vector<std::array<uint32_t, 3>> triangles;  // of three wedges each
-  std::vector<double> areas;                      // of each, before rounding
-  std::vector<uint32_t> first_corner;             // of wedge w: corners[first_corner[w]] .. corners[first_corner[w + 1] - 1]
-  std::vector<uint32_t> corners;                  // 3 * triangle + corner
+  std::vector<double> areas;                       // of each, before rounding
+  ByVertex corners;                                // of each wedge: 3 * triangle + corner
 
   size_t size() const { return positions.size(); }
 };
 
 // A triangle of a surface by its wedges; nothing where two of these are the same. `surface` has the positions before rounding.
 void AddTriangle(const std::array<uint32_t, 3>& corners, const TriangleMesh& surface, const Triangle& triangle, ValueWedges* wedges);
-
-// Sets first_corner and corners from the triangles.
-void FindCorners(ValueWedges* wedges);
 
 // positions: of the primitive, rounded. wanted, rounded: values of the attribute.
 ValueWedges WedgesOf(const Primitive& primitive, const std::vector<Vec3f>& positions, const AccessorData& wanted, const AccessorData& rounded, bool is_direction);
