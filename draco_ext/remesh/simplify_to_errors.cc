@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/group_surface.h"
+#include "geometry/root_bracket.h"
 #include "remesh/attribute_fit.h"
 #include "remesh/attributed_simplify.h"
 #include "remesh/curve_fit.h"
@@ -60,35 +61,52 @@ class Search {
     return mesh;
   }
 
+  // What is known of a sequence.
   struct Found {
+    RootBracket ratios;                   // logarithms of errors over targets, over those of sizes: up to 0 triangles are enough
     std::optional<Trial> smallest;        // that meets the targets; nothing where none does
     std::optional<SurfaceErrors> missed;  // of the largest that does not
+
+    // The size that just meets them, as far as it can be told.
+    double Next() const {
+      constexpr double kPower = 0.7;  // of a ratio, by which sizes are off about
+      constexpr double kMargin = 1.01;
+      if (ratios.IsKnown()) return std::exp(ratios.Next());
+      const RootBracket::Point &enough = ratios.below(), &too_few = ratios.above(), &known = smallest ? enough : too_few;
+      const double next = known.x + kPower * known.y;
+      return kMargin * std::exp(too_few.x < next && next < enough.x ? next : (too_few.x + enough.x) / 2);
+    }
   };
 
-  // The smallest surface of the sequence, of at most `most` triangles, by the samples of the search. guess: its size.
-  StatusOr<Found> Smallest(const AttributedSimplification& sequence, double guess, double most) const {
+  // most: triangles.
+  Found Unknown(const AttributedSimplification& sequence, double most) const {
+    const double too_few = std::max(sequence.fewest_triangles(), 1u) - 0.5;
+    return {RootBracket({std::log(std::max(most, too_few) + 0.5), RootBracket::kUnknown}, {std::log(too_few), RootBracket::kUnknown}), {}, {}};
+  }
+
+  // Looks for the smallest surface of the sequence, by the samples of the search, until errors come to good_enough of the targets. guess: its size.
+  Status FindSmallest(const AttributedSimplification& sequence, double guess, double good_enough, Found* found) const {
     constexpr int kMaxTrials = 7;
-    constexpr double kGoodEnough = 0.97, kCloseEnough = 1.02;
-    double too_few = std::max(sequence.fewest_triangles(), 1u) - 0.5, enough = most + 0.5;
+    constexpr double kCloseEnough = 1.02, kTiny = 1e-6;
     double next = guess;
-    Found found;
-    for (int i = 0; i < kMaxTrials && enough > std::max(kCloseEnough * too_few, too_few + 1); ++i) {
-      const auto size = static_cast<uint32_t>(std::clamp(next, too_few + 0.5, std::max(enough - 0.5, too_few + 0.5)));
+    for (int i = 0; i < kMaxTrials; ++i) {
+      const double too_few = std::exp(found->ratios.above().x), enough = std::exp(found->ratios.below().x);
+      // Sizes between the two, which may themselves be halfway between sizes.
+      const double fewest = std::floor(too_few + 0.25) + 1, most = std::ceil(enough - 0.25) - 1;
+      if (fewest > most || enough <= kCloseEnough * too_few) break;
+      const auto size = static_cast<uint32_t>(std::clamp(next, fewest, most));
       LACERTA_ASSIGN_OR_RETURN(Trial trial, Measured(Fitted(sequence, size), num_search_samples_));
-      const double ratio = trial.ratio;
+      const double ratio = trial.ratio, num_triangles = std::min<double>(size, static_cast<double>(trial.mesh.surface.triangles.size()));
+      found->ratios.Narrow({std::log(ratio <= 1 ? num_triangles : size), std::log(std::max(ratio, kTiny))});
       if (ratio <= 1) {
-        enough = std::min<double>(size, static_cast<double>(trial.mesh.surface.triangles.size()));
-        found.smallest = std::move(trial);
-        if (ratio >= kGoodEnough || enough - 1 < too_few) break;
+        found->smallest = std::move(trial);
+        if (ratio >= good_enough) break;
       } else {
-        too_few = size;
-        found.missed = std::move(trial.errors);
+        found->missed = std::move(trial.errors);
       }
-      // Errors go about as one over the number of triangles; where that leads out of the bracket or nowhere, its middle.
-      next = size * std::clamp(1.01 * ratio, 0.2, 4.0);
-      if (i >= 4 || next <= too_few || next >= enough) next = std::sqrt(std::max(too_few, 1.0) * enough);
+      next = found->Next();
     }
-    return found;
+    return Status();
   }
 
   // Few samples may have been too kind: what counts is measured with more, and given more triangles until it holds.
@@ -181,26 +199,31 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
   constexpr double kFarthest = 2;       // of the distance allowed in the mean, where a chart vanishes
   const double farthest = kFarthest * ShapeTarget(meter, targets);
   std::vector<double> weights = WeightsOfTargets(original, meter, targets);
-  std::optional<Trial> best;
+  constexpr double kRough = 0.85, kGood = 0.97;  // of the targets: while weights are looked for, and in the end
+  std::optional<Search::Found> best;
   std::unique_ptr<const AttributedSimplification> best_sequence;
   const auto all = static_cast<double>(original.surface.triangles.size());
   double guess = 0.3 * all, most = all;
   for (int i = 0; i < std::max(options.num_weightings, 1); ++i) {
     auto sequence = std::make_unique<const AttributedSimplification>(original, weights, std::vector<uint8_t>(), farthest);
-    LACERTA_ASSIGN_OR_RETURN(auto found, search.Smallest(*sequence, guess, most));
+    Search::Found found = search.Unknown(*sequence, most);
+    LACERTA_RETURN_IF_ERROR(search.FindSmallest(*sequence, guess, kRough, &found));
     if (!found.smallest) break;
     search.Reweight(found, &weights);
     // The next weights have to show at once that they are better.
-    guess = most = kWorthwhile * static_cast<double>(found.smallest->mesh.surface.triangles.size());
-    best = std::move(found.smallest);
+    guess = most = kWorthwhile * std::min(found.Next(), static_cast<double>(found.smallest->mesh.surface.triangles.size()));
+    best = std::move(found);
     best_sequence = std::move(sequence);
   }
+  Trial trial;
   if (!best) {
-    LACERTA_ASSIGN_OR_RETURN(best, search.Measured(original, options.num_samples));
+    LACERTA_ASSIGN_OR_RETURN(trial, search.Measured(original, options.num_samples));
   } else {
-    LACERTA_RETURN_IF_ERROR(search.Confirm(*best_sequence, &*best));
+    if (best->smallest->ratio < kGood) LACERTA_RETURN_IF_ERROR(search.FindSmallest(*best_sequence, best->Next(), kGood, &*best));
+    trial = std::move(*best->smallest);
+    LACERTA_RETURN_IF_ERROR(search.Confirm(*best_sequence, &trial));
   }
-  return SimplifiedSurface{std::move(best->mesh), std::move(best->errors), best->ratio <= 1};
+  return SimplifiedSurface{std::move(trial.mesh), std::move(trial.errors), trial.ratio <= 1};
 }
 
 }  // namespace lacerta

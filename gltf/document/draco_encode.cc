@@ -131,6 +131,15 @@ bool CanBeCounted(const AccessorData& data) {
   return most < least || most - least <= kMostDifference;
 }
 
+Status CheckEncodable(const Primitive& primitive) {
+  if (primitive.triangles.empty()) return Unsupported("holds no triangles");
+  for (const Attribute& attribute : primitive.attributes) {
+    if (!AllFinite(attribute)) return Unsupported(attribute.name + " holds values that are not finite");
+    if (!CanBeCounted(attribute.data)) return Unsupported(attribute.name + " holds integers that are too far apart for Draco, which would take gigabytes for them");
+  }
+  return Status();
+}
+
 float MarkRange(const Lattice& lattice) { return static_cast<float>((int64_t{1} << lattice.bits) - 1); }
 
 // Writes the true lattice over the mark.
@@ -212,11 +221,7 @@ Primitive RoundAttributes(const Primitive& primitive, const DracoPrecision& prec
 }
 
 StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const DracoPrecision& precision, DracoSearch search) {
-  if (primitive.triangles.empty()) return Unsupported("holds no triangles");
-  for (const Attribute& attribute : primitive.attributes) {
-    if (!AllFinite(attribute)) return Unsupported(attribute.name + " holds values that are not finite");
-    if (!CanBeCounted(attribute.data)) return Unsupported(attribute.name + " holds integers that are too far apart for Draco, which would take gigabytes for them");
-  }
+  LACERTA_RETURN_IF_ERROR(CheckEncodable(primitive));
   const Primitive rounded = RoundAttributes(primitive, precision);
   LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, ToDraco(rounded, precision));
   DracoEncoded result;
@@ -241,6 +246,14 @@ StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const Dr
   LACERTA_ASSIGN_OR_RETURN(result.decoded, DecodeDracoPrimitive(result.bytes, result.ids, DecodeLimits{}));
   if (result.decoded.triangles.empty()) return Unsupported("holds only degenerate triangles");
   return result;
+}
+
+StatusOr<uint64_t> DracoPrimitiveBytes(const Primitive& primitive, const DracoPrecision& precision, const DracoCoding& coding) {
+  LACERTA_RETURN_IF_ERROR(CheckEncodable(primitive));
+  const Primitive rounded = RoundAttributes(primitive, precision);
+  LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, ToDraco(rounded, precision));
+  LACERTA_ASSIGN_OR_RETURN(const Bytes bytes, EncodeStock(*mesh, rounded, precision, coding));
+  return bytes.size();
 }
 
 StatusOr<DracoEncoded> EncodeInOtherOrder(const Primitive& primitive, const DracoPrecision& precision, const DracoEncoded& encoded) {

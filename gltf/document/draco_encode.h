@@ -60,6 +60,9 @@ enum class DracoSearch {
 // finite.
 StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const DracoPrecision& precision, DracoSearch search = DracoSearch::kConnectivity);
 
+// How many bytes it takes in one coding. Fails like EncodeDracoPrimitive.
+StatusOr<uint64_t> DracoPrimitiveBytes(const Primitive& primitive, const DracoPrecision& precision, const DracoCoding& coding);
+
 // What EncodeDracoPrimitive made of the two, in the same coding with its triangles in the order that takes the fewest bytes of some: each component after
 // the one nearest to it where there are many, and from other triangles on, of primitives of few. The same values, in another order.
 StatusOr<DracoEncoded> EncodeInOtherOrder(const Primitive& primitive, const DracoPrecision& precision, const DracoEncoded& encoded);

@@ -1,10 +1,12 @@
 #include "pack/descents_within.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
 #include "geometry/for_each_branch.h"
+#include "geometry/root_bracket.h"
 #include "pack/value_descent.h"
 
 namespace lacerta {
@@ -40,8 +42,9 @@ std::vector<DescendedValues> DescentsWithin(const std::vector<const Primitive*>&
                                             const RoundedAttribute& attribute, const std::vector<AccessorData>& values, int level, double most_error,
                                             const std::function<double(const std::vector<AccessorData>&)>& error_of) {
   constexpr double kMostErrorShare = 4.0;              // of a single value, over what is allowed in the mean
-  constexpr double kFlattest = -7.0, kSteepest = 3.0;  // powers of 2, of the squared target over the number of values
-  constexpr int kBisections = 5;
+  constexpr double kFlattest = -7.0, kUsual = -0.75, kStride = 1.75, kSteepest = 3.0;  // powers of 2, of the squared target over the number of values
+  constexpr double kNear = -0.01, kTiny = 1e-6;        // of the error over what is allowed; the first its logarithm
+  constexpr int kMostSteps = 5;
   const std::vector<int> levels = LevelsNear(attribute, level);
   std::vector<std::unique_ptr<ValueDescent>> descents(levels.size());
   std::vector<DescendedValues> results(levels.size());
@@ -57,13 +60,15 @@ std::vector<DescendedValues> DescentsWithin(const std::vector<const Primitive*>&
   });
   const std::vector<size_t> promising = Promising(results, most_error, attribute.octahedral);
   ForEachBranch(promising.size(), [&](size_t p) {
-    double low = kFlattest, high = kSteepest;
-    for (int step = 0; step < kBisections; ++step) {
-      const double middle = (low + high) / 2;
-      DescendedValues result = descended(promising[p], middle);
-      const bool is_within = result.error <= most_error;
-      (is_within ? low : high) = middle;
-      if (is_within) results[promising[p]] = std::move(result);
+    const size_t i = promising[p];
+    const auto logarithm = [&](double error) { return std::log(std::max(error / most_error, kTiny)); };
+    RootBracket bracket({kFlattest, logarithm(results[i].error)}, {kSteepest, RootBracket::kUnknown});
+    double power = kUsual;
+    for (int step = 0; step < kMostSteps && logarithm(results[i].error) < kNear; ++step) {
+      DescendedValues result = descended(i, power);
+      bracket.Narrow({power, logarithm(result.error)});
+      if (result.error <= most_error) results[i] = std::move(result);
+      power = bracket.IsKnown() ? bracket.Next() : std::min(power + kStride, kSteepest);
     }
   });
   std::vector<DescendedValues> kept;

@@ -118,6 +118,7 @@ void PositionDescent::Move(size_t w, const LatticeNumbers& lattice, double slope
     const double others = Dot(normal, vertices->moves[t[(corner + 1) % 3]] + vertices->moves[t[(corner + 2) % 3]]);
     sides.push_back({triangle, wedges_.areas[triangle] / kCorners, others, !(Dot(AreaWith(t, w, vertices->moves[w], *vertices), normal) > 0.0)});
   }
+  const auto bits = prediction_.BitsNear(w, vertices->points, costs);
   const LatticePoint now = vertices->points[w];
   LatticePoint best = now;
   Vec3d best_move = vertices->moves[w];
@@ -133,7 +134,7 @@ void PositionDescent::Move(size_t w, const LatticeNumbers& lattice, double slope
       distortion += side.share * (along * along + along * side.others + kSlide * Dot(move, move));
     }
     if (distortion >= least) return;
-    const double cost = distortion + slope * prediction_.Bits(w, point, vertices->points, costs);
+    const double cost = distortion + slope * bits(point);
     if (cost >= least) return;
     const auto turns = [&](const Side& side) {
       return !side.is_turned && !(Dot(AreaWith(wedges_.triangles[side.triangle], w, move, *vertices), normals_[side.triangle]) > 0.0);

@@ -61,6 +61,8 @@ double Square(double x) { return x * x; }
 // How many levels finer a step is that is this many times smaller.
 int LevelsFiner(double factor) { return static_cast<int>(std::ceil(kLevelsPerBit * std::log2(factor))); }
 
+Status TooLarge(uint64_t bytes) { return Unsupported("compressed it would be larger (about " + std::to_string(bytes) + " bytes)"); }
+
 // Of colors and of application attributes, which the surface tells.
 std::map<std::string, double> TargetsByName(const FamilyMeter& meter) {
   std::map<std::string, double> targets;
@@ -107,20 +109,20 @@ class FamilyRounder {
   StatusOr<RoundedFamily> Run(uint64_t most_bytes) {
     constexpr int kMostRounds = 10;
     constexpr double kHopeless = 1.5;  // of the bytes, whatever a measure would correct
+    constexpr double kUnlikely = 1.1;  // of the bytes, for what follows takes a tenth off, or little more
     constexpr double kWorthwhile = 0.01;  // of the bytes, for another measure
     Trial* best = nullptr;
     for (int round = 0; round < kMostRounds; ++round) {
       LACERTA_ASSIGN_OR_RETURN(Trial* trial, Smallest(most_bytes));
       // What is decoded has all that was asked for and nothing smaller is expected: done.
       if (trial == nullptr || trial->is_measured) break;
-      if (static_cast<double>(trial->bytes) > kHopeless * static_cast<double>(most_bytes)) {
-        return Unsupported("compressed it would be larger (about " + std::to_string(trial->bytes) + " bytes)");
-      }
+      if (static_cast<double>(trial->bytes) > kHopeless * static_cast<double>(most_bytes)) return TooLarge(trial->bytes);
       if (best != nullptr && static_cast<double>(trial->bytes) > (1.0 - kWorthwhile) * static_cast<double>(best->bytes)) break;
       Measure(trial);
       if (trial->met) best = trial;
     }
     if (best == nullptr) return Unsupported("rounding misses the errors at every precision");
+    if (static_cast<double>(best->bytes) > kUnlikely * static_cast<double>(most_bytes)) return TooLarge(best->bytes);
     if (!meter_.status().ok()) return Shrunk(std::move(*best));
     LACERTA_ASSIGN_OR_RETURN(best, Coarsened(best));
     LACERTA_ASSIGN_OR_RETURN(Trial descended, Descended(*best));
@@ -219,22 +221,31 @@ class FamilyRounder {
     constexpr double kNearer = 0.98;       // than what missed
     const RoundedPositions& positions = forecast_.Positions(best.levels.positions);
     std::vector<double> most_errors(attributes_.size(), kInfinity);
-    for (int i = 0; i < kMostMeasures; ++i) {
+    std::vector<std::optional<DescendedValues>> descents(attributes_.size());
+    std::vector<size_t> due;
+    for (size_t a = 0; a < attributes_.size(); ++a) {
+      if (indices_[a].has_value() && attributes_[a].is_shown && best.levels.attributes[a] <= kMostLevel) due.push_back(a);
+    }
+    for (int i = 0; i < kMostMeasures && !due.empty(); ++i) {
+      for (const size_t a : due) {
+        const double room = attributes_[a].target * std::sqrt(std::max(RoomFor(a, positions), 0.0));
+        LACERTA_ASSIGN_OR_RETURN(descents[a], SmallestDescent(a, best, positions, std::min(room, most_errors[a])));
+      }
       Trial trial = best;
       trial.errors = {};
       for (size_t a = 0; a < attributes_.size(); ++a) {
-        if (!indices_[a].has_value() || !attributes_[a].is_shown || best.levels.attributes[a] > kMostLevel) continue;
-        const double room = attributes_[a].target * std::sqrt(std::max(RoomFor(a, positions), 0.0));
-        LACERTA_ASSIGN_OR_RETURN(const std::optional<DescendedValues> descent, SmallestDescent(a, best, positions, std::min(room, most_errors[a])));
-        if (descent.has_value()) SetValues(a, *descent, positions, &trial);
+        if (descents[a].has_value()) SetValues(a, *descents[a], positions, &trial);
       }
       LACERTA_RETURN_IF_ERROR(EncodeRounded(&trial));
       if (static_cast<double>(trial.bytes) > (1.0 - kWorthwhile) * static_cast<double>(best.bytes)) break;
       Measure(&trial);
       if (trial.met) return trial;
       if (trial.errors.attributes.empty()) break;  // not measured: something else is against it
+      due.clear();
       for (size_t a = 0; a < attributes_.size(); ++a) {
-        if (indices_[a].has_value() && Ratio(trial.errors, *indices_[a]) > 1.0) most_errors[a] = kNearer * trial.rounded[a];
+        if (!indices_[a].has_value() || Ratio(trial.errors, *indices_[a]) <= 1.0) continue;
+        most_errors[a] = kNearer * trial.rounded[a];
+        if (descents[a].has_value()) due.push_back(a);
       }
     }
     return best;
@@ -251,12 +262,24 @@ class FamilyRounder {
     for (DescendedValues& descent : descents) {
       Trial trial = best;
       SetValues(a, descent, positions, &trial);
-      LACERTA_RETURN_IF_ERROR(EncodeRounded(&trial));
-      if (trial.bytes >= least) continue;
-      least = trial.bytes;
+      LACERTA_ASSIGN_OR_RETURN(const uint64_t bytes, BytesAsCoded(trial));
+      if (bytes >= least) continue;
+      least = bytes;
       smallest = std::move(descent);
     }
     return smallest;
+  }
+
+  // What a trial takes in the codings that its members have.
+  StatusOr<uint64_t> BytesAsCoded(const Trial& trial) const {
+    std::vector<StatusOr<uint64_t>> sizes(primitives_.size(), InternalError("not encoded"));
+    ForEachBranch(primitives_.size(), [&](size_t m) { sizes[m] = DracoPrimitiveBytes(*primitives_[m], trial.family.precisions[m], trial.family.members[m].coding); });
+    uint64_t sum = 0;
+    for (const StatusOr<uint64_t>& size : sizes) {
+      LACERTA_RETURN_IF_ERROR(size.status());
+      sum += size.value();
+    }
+    return sum;
   }
 
   void SetValues(size_t a, const DescendedValues& descent, const RoundedPositions& positions, Trial* trial) {

@@ -141,6 +141,7 @@ class ValueDescent::PartOf : public ValueDescent::Part {
 
   void Move(size_t w, double most2, double slope, const ResidualCosts& costs, Moving* moving) const {
     const Surroundings around = SurroundingsOf(wedges_, *moving, w);
+    const auto bits = prediction_.BitsNear(w, moving->points, costs);
     const std::optional<Facing> facing = Prediction::kIsNormal ? std::optional<Facing>(Facing(wedges_, *moving, w)) : std::nullopt;
     double least = std::numeric_limits<double>::infinity();
     LatticePoint best = moving->points[w];
@@ -150,7 +151,7 @@ class ValueDescent::PartOf : public ValueDescent::Part {
       if (!error.has_value()) return;
       const double square = Dot(*error, *error), distortion = around.weight * square + Dot(around.pull, *error);
       if (square > most2 || distortion >= least) return;
-      const double cost = distortion + slope * prediction_.Bits(w, point, moving->points, costs);
+      const double cost = distortion + slope * bits(point);
       if (cost >= least || (facing.has_value() && !facing->IsKept(wedges_.wanted[w] + *error))) return;
       least = cost;
       best = point;

@@ -29,12 +29,12 @@ class ResidualCosts {
   void Settle() {
     constexpr double kUnseen = 0.02;
     constexpr int kSmoothing = 4;  // sizes within a fourth of each other are taken together
-    double sum = 1.0;
-    for (const double count : counts_) sum += count;
+    std::vector<double> before(1, 0.0);  // counts of smaller ones
+    for (const double count : counts_) before.push_back(before.back() + count);
+    const double sum = 1.0 + before.back();
     for (int r = 0; r < kNumBins; ++r) {
       const int reach = r / kSmoothing, low = std::max(std::min(r, 1), r - reach), high = std::min(kNumBins - 1, r + reach);
-      double near = 0.0;
-      for (int k = low; k <= high; ++k) near += counts_[static_cast<size_t>(k)];
+      const double near = before[static_cast<size_t>(high) + 1] - before[static_cast<size_t>(low)];
       const double signs = r == 0 ? 1.0 : 2.0;
       bits_[static_cast<size_t>(r)] = -std::log2((near / (high - low + 1) / signs + kUnseen / (1 + r)) / sum);
     }
@@ -94,9 +94,12 @@ class NormalPrediction {
     }
   }
 
-  double Bits(size_t wedge, const LatticePoint& point, const std::vector<LatticePoint>&, const ResidualCosts& costs) const {
-    const std::array<int32_t, 2> residual = ResidualOf(wedge, point);
-    return costs(residual[0]) + costs(residual[1]);
+  // What a wedge takes at a point, all others where they are.
+  auto BitsNear(size_t wedge, const std::vector<LatticePoint>&, const ResidualCosts& costs) const {
+    return [this, wedge, &costs](const LatticePoint& point) {
+      const std::array<int32_t, 2> residual = ResidualOf(wedge, point);
+      return costs(residual[0]) + costs(residual[1]);
+    };
   }
 
  private:
@@ -157,7 +160,12 @@ class TexturePrediction {
     }
   }
 
-  double Bits(size_t wedge, const LatticePoint& point, const std::vector<LatticePoint>& points, const ResidualCosts& costs) const {
+  auto BitsNear(size_t wedge, const std::vector<LatticePoint>& points, const ResidualCosts& costs) const {
+    return [this, wedge, &points, &costs](const LatticePoint& point) { return BitsAt(wedge, point, points, costs); };
+  }
+
+ private:
+  double BitsAt(size_t wedge, const LatticePoint& point, const std::vector<LatticePoint>& points, const ResidualCosts& costs) const {
     double bits = 0.0;
     for (const uint32_t corner : wedges_.corners[wedge]) {
       const uint32_t first = corner - corner % 3;
@@ -171,7 +179,6 @@ class TexturePrediction {
     return weight_ * bits;
   }
 
- private:
   struct Frame {
     double along = 0.0, across = 0.0;  // of the tip, over the length of the base
   };
@@ -227,15 +234,32 @@ class FlapPrediction {
     }
   }
 
-  double Bits(size_t wedge, const LatticePoint& point, const std::vector<LatticePoint>& points, const ResidualCosts& costs) const {
-    double bits = 0.0;
-    for (const uint32_t place : places_[wedge]) {
-      const std::array<uint32_t, 4>& flap = flaps_[place / 4];
-      const int32_t sign = place % 4 < 2 ? 1 : -1;
-      for (const uint32_t c : coordinates_) bits += costs(ResidualOf(flap, c, points) + sign * (point[c] - points[wedge][c]));
+  // Of points no more than a step off in any of the coordinates, each of which takes its bits apart.
+  class BitsAround {
+   public:
+    BitsAround(const FlapPrediction& prediction, size_t wedge, const std::vector<LatticePoint>& points, const ResidualCosts& costs) : around_(points[wedge]) {
+      for (const uint32_t place : prediction.places_[wedge]) {
+        const std::array<uint32_t, 4>& flap = prediction.flaps_[place / 4];
+        const int32_t sign = place % 4 < 2 ? 1 : -1;
+        for (const uint32_t c : prediction.coordinates_) {
+          const int32_t residual = ResidualOf(flap, c, points);
+          for (int32_t step = -1; step <= 1; ++step) bits_[c][static_cast<size_t>(step + 1)] += prediction.weight_ * costs(residual + sign * step);
+        }
+      }
     }
-    return weight_ * bits;
-  }
+
+    double operator()(const LatticePoint& point) const {
+      double bits = 0.0;
+      for (size_t c = 0; c < bits_.size(); ++c) bits += bits_[c][static_cast<size_t>(point[c] - around_[c] + 1)];
+      return bits;
+    }
+
+   private:
+    const LatticePoint around_;
+    std::array<std::array<double, 3>, kMostComponents> bits_ = {};
+  };
+
+  BitsAround BitsNear(size_t wedge, const std::vector<LatticePoint>& points, const ResidualCosts& costs) const { return {*this, wedge, points, costs}; }
 
  private:
   // Coordinates that are the same everywhere take no bits, and say nothing of others.
