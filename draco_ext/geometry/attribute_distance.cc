@@ -101,15 +101,24 @@ AttributeError Summarize(std::vector<float> errors) {
   errors.erase(std::remove(errors.begin(), errors.end(), kAbsent), errors.end());
   AttributeError result;
   if (errors.empty()) return result;
-  std::sort(errors.begin(), errors.end());  // all of them: sums in an order that any standard library gives
   const auto num_best = static_cast<size_t>(std::ceil(kBestShare * static_cast<double>(errors.size())));
-  double sum = 0;
-  for (size_t i = 0; i < errors.size(); ++i) {
-    sum += static_cast<double>(errors[i]) * static_cast<double>(errors[i]);
-    if (i + 1 == num_best) result.rms_99 = std::sqrt(sum / static_cast<double>(num_best));
+  std::vector<float> parted = errors;
+  const auto last_best = parted.begin() + static_cast<std::ptrdiff_t>(num_best) - 1;
+  std::nth_element(parted.begin(), last_best, parted.end());
+  // Sums in the order of the samples: any standard library gives the same.
+  double sum = 0, best_sum = 0;
+  size_t num_below = 0;
+  for (const float error : errors) {
+    const double square = static_cast<double>(error) * static_cast<double>(error);
+    sum += square;
+    if (!(error < *last_best)) continue;
+    best_sum += square;
+    ++num_below;
   }
+  best_sum += static_cast<double>(num_best - num_below) * static_cast<double>(*last_best) * static_cast<double>(*last_best);
+  result.rms_99 = std::sqrt(best_sum / static_cast<double>(num_best));
   result.rms = std::sqrt(sum / static_cast<double>(errors.size()));
-  result.max = static_cast<double>(errors.back());
+  result.max = static_cast<double>(*std::max_element(errors.begin(), errors.end()));
   result.share = static_cast<double>(errors.size()) / static_cast<double>(num_samples);
   return result;
 }

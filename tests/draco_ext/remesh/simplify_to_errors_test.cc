@@ -47,6 +47,25 @@ TEST(SimplifyToErrorsTest, WhatCannotBeSimplifiedComesBack) {
   EXPECT_EQ(result.mesh.surface.triangles.size(), 72u);
 }
 
+// Charts of two triangles each, of which most have to stay: the search begins at fewer than there can be.
+TEST(SimplifyToErrorsTest, ManyChartsAreSimplifiedAsFarAsTheyCanBe) {
+  constexpr int kCharts = 40;
+  std::vector<VertexSoup> soups;
+  for (int i = 0; i < kCharts; ++i) {
+    VertexSoup chart = shapes::TexturedGrid(i == 0 ? 4 : 1, i == 0 ? 4 : 1);
+    for (Vec3f& p : chart.positions) p += Vec3f{2.0f * static_cast<float>(i), 0, 0};
+    soups.push_back(std::move(chart));
+  }
+  const AttributedMesh mesh = WeldSoups(soups).value();
+  const size_t all = mesh.surface.triangles.size();
+  ASSERT_EQ(all, 2u * (kCharts - 1) + 32u);
+  const ErrorTargets targets{1e-3, {1, 1}};
+  const SimplifiedSurface result = Simplify(mesh, targets);
+  EXPECT_TRUE(result.meets_targets);
+  EXPECT_LT(result.mesh.surface.triangles.size(), all - 20);
+  EXPECT_GE(result.mesh.surface.triangles.size(), 2u * kCharts);
+}
+
 TEST(SimplifyToErrorsTest, GoesToTheEndWhereTargetsAllow) {
   const AttributedMesh mesh = WeldSoups({shapes::TexturedBox(6)}).value();
   EXPECT_EQ(Simplify(mesh, {1e-3, {1, 1}}).mesh.surface.triangles.size(), 12u);

@@ -176,6 +176,8 @@ TEST(DracoEncode, MoreWaysTakeFewerBytesForTheSameValues) {
   ASSERT_TRUE(smaller.ok()) << smaller.status().message();
   EXPECT_LT(predicted.value().bytes.size(), quick.value().bytes.size());
   EXPECT_LE(smaller.value().bytes.size(), predicted.value().bytes.size());
+  EXPECT_EQ(DracoPrimitiveBytes(primitive, precision, quick.value().coding).value(), quick.value().bytes.size());
+  EXPECT_EQ(DracoPrimitiveBytes(primitive, precision, predicted.value().coding).value(), predicted.value().bytes.size());
   EXPECT_EQ(predicted.value().decoded.triangles, quick.value().decoded.triangles);
   for (size_t a = 0; a < primitive.attributes.size(); ++a) {
     EXPECT_EQ(predicted.value().decoded.attributes[a].data.bytes, quick.value().decoded.attributes[a].data.bytes);
