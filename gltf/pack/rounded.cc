@@ -206,6 +206,7 @@ class FamilyRounder {
       Measure(smallest);
       if (smallest->met) {
         best = smallest;
+        strides[changed] *= 2;
       } else {
         strides[changed] = SmallerStride(changed, strides[changed]);
       }
