@@ -132,7 +132,7 @@ class BaseWalk {
         return candidate.Meet(targets_, meet);
       }
       constexpr double kStuck = 0.9;  // of the error before: more levels do not help
-      constexpr double kMostGain = 4; // of a level: what is linear on triangles is off by squares of their edges
+      constexpr double kMostGain = 4;  // of a level: what is linear on triangles is off by squares of their edges
       const double levels_left = std::floor(std::log(most_faces / finest) / std::log(4.0));
       if (ratio > kStuck * before || ratio > std::pow(kMostGain, levels_left)) break;
     }
