@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -48,35 +47,25 @@ inline double LengthOf(const std::vector<Segment>& segments) {
   return length;
 }
 
-// Length of the parts of `segments` that are farther than about `tolerance` (up to twice that) from all of `others`.
+inline double DistanceTo(const Segment& segment, const Vec3f& p) {
+  const Vec3f along = segment.second - segment.first, from = p - segment.first;
+  const float length2 = Dot(along, along);
+  const float t = length2 > 0.0f ? std::clamp(Dot(from, along) / length2, 0.0f, 1.0f) : 0.0f;
+  return static_cast<double>(Norm(from - along * t));
+}
+
+// Length of the parts of `segments` that are farther than `tolerance` from all of `others`.
 inline double LengthFarFrom(const std::vector<Segment>& segments, const std::vector<Segment>& others, double tolerance) {
-  using Cell = std::tuple<int64_t, int64_t, int64_t>;
-  const auto cell_of = [&](const Vec3f& p) {
-    const auto axis = [&](float x) { return static_cast<int64_t>(std::floor(x / tolerance)); };
-    return Cell(axis(p.x), axis(p.y), axis(p.z));
-  };
-  const auto for_samples = [&](const Segment& segment, const auto& use) {
-    const double length = static_cast<double>(Norm(segment.second - segment.first));
+  double far = 0.0;
+  for (const auto& [a, b] : segments) {
+    const double length = static_cast<double>(Norm(b - a));
     const int count = static_cast<int>(std::min(2.0 * length / tolerance, 1e4)) + 1;
     for (int i = 0; i < count; ++i) {
       const float t = (static_cast<float>(i) + 0.5f) / static_cast<float>(count);
-      use(segment.first * (1.0f - t) + segment.second * t, length / count);
+      const Vec3f p = a * (1.0f - t) + b * t;
+      const bool is_near = std::any_of(others.begin(), others.end(), [&](const Segment& other) { return DistanceTo(other, p) <= tolerance; });
+      far += is_near ? 0.0 : length / count;
     }
-  };
-  std::set<Cell> near;
-  for (const Segment& segment : others) {
-    for_samples(segment, [&](const Vec3f& p, double) {
-      const auto [x, y, z] = cell_of(p);
-      for (int64_t dx = -1; dx <= 1; ++dx) {
-        for (int64_t dy = -1; dy <= 1; ++dy) {
-          for (int64_t dz = -1; dz <= 1; ++dz) near.insert({x + dx, y + dy, z + dz});
-        }
-      }
-    });
-  }
-  double far = 0.0;
-  for (const Segment& segment : segments) {
-    for_samples(segment, [&](const Vec3f& p, double length) { far += near.count(cell_of(p)) == 0 ? length : 0.0; });
   }
   return far;
 }
