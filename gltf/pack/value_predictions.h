@@ -243,14 +243,18 @@ class FlapPrediction {
         const int32_t sign = place % 4 < 2 ? 1 : -1;
         for (const uint32_t c : prediction.coordinates_) {
           const int32_t residual = ResidualOf(flap, c, points);
-          for (int32_t step = -1; step <= 1; ++step) bits_[c][static_cast<size_t>(step + 1)] += prediction.weight_ * costs(residual + sign * step);
+          int32_t step = -1;
+          for (double& bits : bits_[c]) bits += prediction.weight_ * costs(residual + sign * step++);
         }
       }
     }
 
     double operator()(const LatticePoint& point) const {
       double bits = 0.0;
-      for (size_t c = 0; c < bits_.size(); ++c) bits += bits_[c][static_cast<size_t>(point[c] - around_[c] + 1)];
+      for (size_t c = 0; c < bits_.size(); ++c) {
+        const int32_t step = point[c] - around_[c];
+        bits += step == 0 ? bits_[c][1] : bits_[c][step < 0 ? 0 : 2];
+      }
       return bits;
     }
 
