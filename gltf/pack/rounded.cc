@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -273,14 +274,9 @@ class FamilyRounder {
 
   // What a trial takes in the codings that its members have.
   StatusOr<uint64_t> BytesAsCoded(const Trial& trial) const {
-    std::vector<StatusOr<uint64_t>> sizes(primitives_.size(), InternalError("not encoded"));
-    ForEachBranch(primitives_.size(), [&](size_t m) { sizes[m] = DracoPrimitiveBytes(*primitives_[m], trial.family.precisions[m], trial.family.members[m].coding); });
-    uint64_t sum = 0;
-    for (const StatusOr<uint64_t>& size : sizes) {
-      LACERTA_RETURN_IF_ERROR(size.status());
-      sum += size.value();
-    }
-    return sum;
+    const auto bytes_of = [&](size_t m) { return DracoPrimitiveBytes(*primitives_[m], trial.family.precisions[m], trial.family.members[m].coding); };
+    LACERTA_ASSIGN_OR_RETURN(const std::vector<uint64_t> sizes, OfEachMember<uint64_t>(bytes_of));
+    return std::accumulate(sizes.begin(), sizes.end(), uint64_t{0});
   }
 
   void SetValues(size_t a, const DescendedValues& descent, const RoundedPositions& positions, Trial* trial) {
@@ -419,16 +415,23 @@ class FamilyRounder {
 
   template <typename EncodeMember>
   Status EncodeMembers(Trial* trial, const EncodeMember& encode) const {
-    std::vector<StatusOr<DracoEncoded>> encoded(primitives_.size(), InternalError("not encoded"));
-    ForEachBranch(primitives_.size(), [&](size_t m) { encoded[m] = encode(m); });
+    LACERTA_ASSIGN_OR_RETURN(trial->family.members, OfEachMember<DracoEncoded>(encode));
     trial->bytes = 0;
-    trial->family.members.clear();
-    for (StatusOr<DracoEncoded>& member : encoded) {
-      LACERTA_RETURN_IF_ERROR(member.status());
-      trial->bytes += member.value().bytes.size();
-      trial->family.members.push_back(std::move(member).value());
-    }
+    for (const DracoEncoded& member : trial->family.members) trial->bytes += member.bytes.size();
     return Status();
+  }
+
+  // What `make` gives for each primitive, several at a time; fails where one fails.
+  template <typename T, typename Make>
+  StatusOr<std::vector<T>> OfEachMember(const Make& make) const {
+    std::vector<StatusOr<T>> made(primitives_.size(), InternalError("not made"));
+    ForEachBranch(primitives_.size(), [&](size_t m) { made[m] = make(m); });
+    std::vector<T> result;
+    for (StatusOr<T>& one : made) {
+      LACERTA_RETURN_IF_ERROR(one.status());
+      result.push_back(std::move(one).value());
+    }
+    return result;
   }
 
   // Says whether what is decoded meets the targets, and corrects the forecast.
