@@ -22,6 +22,7 @@ namespace lacerta {
 namespace {
 
 constexpr uint32_t kNone = SurfacePoint::kNone;
+constexpr size_t kGrain = 64;  // of work for a thread
 
 // An edge from a to b of the triangle abc, and from b to a of the triangle bad.
 struct Edge {
@@ -72,11 +73,54 @@ std::vector<Edge> FindEdges(const TriangleMesh& mesh, const MeshNeighbors& neigh
   return result;
 }
 
+constexpr uint64_t kPointsOfFace = 6;  // that tell how far a triangle is from the input
+
+Vec3f PointOfFace(const TriangleMesh& mesh, const Triangle& t, uint64_t i) {
+  const Vec3d weights = TrianglePoint(i, 0.5);
+  Vec3d point;
+  for (int k = 0; k < 3; ++k) point += Vec3Cast<double>(mesh.positions[t[k]]) * weights[k];
+  return Vec3Cast<float>(point);
+}
+
+// How far a triangle is from the input.
+struct FaceDistance {
+  double mean_square = 0;
+  uint32_t near = kNone;  // a face of the input there
+};
+
+FaceDistance DistanceOfFace(const FitTarget& target, const TriangleMesh& mesh, uint32_t face, uint32_t hint) {
+  FaceDistance result{0, hint};
+  for (uint64_t i = 0; i < kPointsOfFace; ++i) {
+    result.mean_square += target.SquaredDistance(PointOfFace(mesh, mesh.triangles[face], i), &result.near) / kPointsOfFace;
+  }
+  return result;
+}
+
+std::vector<FaceDistance> DistancesOfFaces(const FitTarget& target, const TriangleMesh& mesh) {
+  std::vector<FaceDistance> result(mesh.triangles.size());
+  tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(result.size()), kGrain), [&](const tbb::blocked_range<uint32_t>& range) {
+    uint32_t hint = kNone;
+    for (uint32_t f = range.begin(); f != range.end(); ++f) {
+      result[f] = DistanceOfFace(target, mesh, f, hint);
+      hint = result[f].near;
+    }
+  });
+  return result;
+}
+
 // What flips of single edges of a mesh are worth.
 class FlipMeter {
  public:
-  FlipMeter(const FitTarget& target, const RateModel& rate, const TriangleMesh& mesh, const MeshNeighbors& neighbors)
-      : target_(target), rate_(rate), mesh_(mesh), neighbors_(neighbors), hits_(target.HitsOn(mesh)), first_(mesh.triangles.size() + 1, 0) {
+  // distances: of the mesh's faces.
+  FlipMeter(const FitTarget& target, const RateModel& rate, const TriangleMesh& mesh, const MeshNeighbors& neighbors,
+            const std::vector<FaceDistance>& distances)
+      : target_(target),
+        rate_(rate),
+        mesh_(mesh),
+        neighbors_(neighbors),
+        distances_(distances),
+        hits_(target.HitsOn(mesh)),
+        first_(mesh.triangles.size() + 1, 0) {
     for (const FitTarget::Hit& hit : hits_) {
       if (hit.face != kNone) ++first_[hit.face + 1];
     }
@@ -97,10 +141,9 @@ class FlipMeter {
     if (LookAway(old, flipped)) return 0;
     const double worth_of_bits = rate_.distortion_per_bit > 0 ? kTwoSides * rate_.distortion_per_bit * BitsSaved(edge) : 0;
     const auto [forward, flipped_forward] = ForwardOf(edge, flipped);
-    uint32_t hint = kNone;
-    const double before = forward + Backward(old, &hint);
-    const double most = (1 - kLeastShare) * before + worth_of_bits;
-    return flipped_forward < most ? most - flipped_forward - Backward(flipped, &hint) : 0;
+    double before = forward;
+    for (const uint32_t f : edge.faces) before += AreaShare(mesh_.triangles[f]) * distances_[f].mean_square;
+    return GainOf(flipped, (1 - kLeastShare) * before + worth_of_bits - flipped_forward, distances_[edge.faces[0]].near);
   }
 
  private:
@@ -137,19 +180,16 @@ class FlipMeter {
     return {now, then};
   }
 
-  // The part that two triangles have in the mean squared distance from the mesh to the input.
-  double Backward(const std::array<Triangle, 2>& triangles, uint32_t* hint) const {
-    constexpr uint64_t kPoints = 6;  // of each
-    double sum = 0;
+  double AreaShare(const Triangle& t) const { return Norm(AreaVector(mesh_.positions, t)) / doubled_area_; }
+
+  // What is left of `gain` once the two triangles have their part in the mean squared distance from the mesh to the input; not above 0 where
+  // nothing is. hint: a face of the input that may be near.
+  double GainOf(const std::array<Triangle, 2>& triangles, double gain, uint32_t hint) const {
     for (const Triangle& t : triangles) {
-      const double share = Norm(AreaVector(mesh_.positions, t)) / doubled_area_ / kPoints;
-      for (uint64_t i = 0; i < kPoints; ++i) {
-        const Vec3d weights = TrianglePoint(i, 0.5);
-        const Vec3d point = At(t[0]) * weights[0] + At(t[1]) * weights[1] + At(t[2]) * weights[2];
-        sum += share * target_.SquaredDistance(Vec3Cast<float>(point), hint);
-      }
+      const double share = AreaShare(t) / kPointsOfFace;
+      for (uint64_t i = 0; i < kPointsOfFace && gain > 0; ++i) gain -= share * target_.SquaredDistance(PointOfFace(mesh_, t, i), &hint);
     }
-    return sum;
+    return gain;
   }
 
   // Of positions, by the flaps over the four edges around, whose corners across change, and of the connectivity.
@@ -175,6 +215,7 @@ class FlipMeter {
   const RateModel& rate_;
   const TriangleMesh& mesh_;
   const MeshNeighbors& neighbors_;
+  const std::vector<FaceDistance>& distances_;
   const std::vector<FitTarget::Hit> hits_;
   std::vector<uint32_t> first_, order_;  // hits on face f: order_[first_[f]] .. order_[first_[f + 1] - 1]
   double doubled_area_ = 0;
@@ -185,13 +226,15 @@ struct Flip {
   double gain = 0;
 };
 
-// Those that gain, the best first.
-std::vector<Flip> FindFlips(const FitTarget& target, const RateModel& rate, const TriangleMesh& mesh) {
+// Those that gain, the best first, of edges near vertices that are marked.
+std::vector<Flip> FindFlips(const FitTarget& target, const RateModel& rate, const TriangleMesh& mesh, const std::vector<FaceDistance>& distances,
+                            const std::vector<uint8_t>& is_marked) {
   const MeshNeighbors neighbors(mesh);
-  const FlipMeter meter(target, rate, mesh, neighbors);
+  const FlipMeter meter(target, rate, mesh, neighbors, distances);
   std::vector<Flip> flips;
-  for (const Edge& edge : FindEdges(mesh, neighbors)) flips.push_back({edge, 0});
-  constexpr size_t kGrain = 64;
+  for (const Edge& edge : FindEdges(mesh, neighbors)) {
+    if ((is_marked[edge.a] | is_marked[edge.b] | is_marked[edge.c] | is_marked[edge.d]) != 0) flips.push_back({edge, 0});
+  }
   tbb::parallel_for(tbb::blocked_range<size_t>(0, flips.size(), kGrain), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t i = range.begin(); i != range.end(); ++i) flips[i].gain = meter.Gain(flips[i].edge);
   });
@@ -205,17 +248,23 @@ std::vector<Flip> FindFlips(const FitTarget& target, const RateModel& rate, cons
 size_t FlipEdges(const FitTarget& target, const RateModel& rate, TriangleMesh* mesh) {
   constexpr int kMostPasses = 3;
   size_t num_flipped = 0;
+  std::vector<FaceDistance> distances = DistancesOfFaces(target, *mesh);
+  std::vector<uint8_t> is_changed(mesh->positions.size(), 1);  // by the last pass: elsewhere nothing gained then, nor does it now
   for (int pass = 0; pass < kMostPasses; ++pass) {
     const size_t before = num_flipped;
+    const std::vector<Flip> flips = FindFlips(target, rate, *mesh, distances, is_changed);
+    std::fill(is_changed.begin(), is_changed.end(), uint8_t{0});
     std::vector<uint8_t> is_taken(mesh->triangles.size(), 0);
     std::set<std::pair<uint32_t, uint32_t>> made;  // edges
-    for (const auto& [edge, gain] : FindFlips(target, rate, *mesh)) {
+    for (const auto& [edge, gain] : flips) {
       const auto [first, second] = edge.faces;
       if (is_taken[first] != 0 || is_taken[second] != 0 || !made.emplace(std::minmax(edge.c, edge.d)).second) continue;
       is_taken[first] = is_taken[second] = 1;
       const std::array<Triangle, 2> flipped = edge.Flipped();
       mesh->triangles[first] = flipped[0];
       mesh->triangles[second] = flipped[1];
+      for (const uint32_t f : edge.faces) distances[f] = DistanceOfFace(target, *mesh, f, distances[f].near);
+      for (const uint32_t v : {edge.a, edge.b, edge.c, edge.d}) is_changed[v] = 1;
       ++num_flipped;
     }
     if (num_flipped == before) break;
