@@ -112,6 +112,7 @@ class FamilyRounder {
     constexpr double kHopeless = 1.5;  // of the bytes, whatever a measure would correct
     constexpr double kUnlikely = 1.1;  // of the bytes, for what follows takes a tenth off, or little more
     constexpr double kWorthwhile = 0.01;  // of the bytes, for another measure
+    if (const uint64_t fewest = FewestBytes(most_bytes); static_cast<double>(fewest) > kHopeless * static_cast<double>(most_bytes)) return TooLarge(fewest);
     Trial* best = nullptr;
     for (int round = 0; round < kMostRounds; ++round) {
       LACERTA_ASSIGN_OR_RETURN(Trial* trial, Smallest(most_bytes));
@@ -162,6 +163,19 @@ class FamilyRounder {
   // What rounding may add to the error of the poses, relative to the target and squared: positions, and weights relative to their
   // own target.
   double PoseRoom() const { return poses_.has_value() ? (1.0 - Square(own_poses_)) / correction_.poses : kInfinity; }
+
+  // No more than any precision that meets the targets takes: the bytes of positions alone, far too coarse. 0 where that is not known, or any number will do.
+  uint64_t FewestBytes(uint64_t most_bytes) const {
+    constexpr int kTooCoarse = 2 * kLevelsPerBit;
+    if (most_bytes == std::numeric_limits<uint64_t>::max()) return 0;
+    const DracoPrecision precision{forecast_.LatticeAt(std::max(1, forecast_.StartLevel(meter_.error()) - kTooCoarse)), {}, 0};
+    const auto bytes_of = [&](size_t m) {
+      const TriangleMesh surface = Surface(*primitives_[m]);
+      return DracoPrimitiveBytes({surface.positions.size(), surface.triangles, {{"POSITION", MakeFloatAccessor(surface.positions)}}}, precision, {});
+    };
+    const StatusOr<std::vector<uint64_t>> sizes = OfEachMember<uint64_t>(bytes_of);
+    return sizes.ok() ? std::accumulate(sizes.value().begin(), sizes.value().end(), uint64_t{0}) : 0;
+  }
 
   // The smallest of what is expected to meet the targets; null where nothing is. One that takes far more than most_bytes ends the search.
   StatusOr<Trial*> Smallest(uint64_t most_bytes) {

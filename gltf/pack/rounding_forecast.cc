@@ -50,11 +50,13 @@ int RoundingForecast::StartLevel(double error) const {
   return std::isfinite(steps) ? std::min(static_cast<int>(kLevelsPerBit * std::log2(steps)) + 1, kMostLevel) : kMostLevel;
 }
 
+Lattice RoundingForecast::LatticeAt(int level) const { return LatticeOfStep(box_, box_.range * std::exp2(-static_cast<float>(level) / kLevelsPerBit)); }
+
 const RoundedPositions& RoundingForecast::Positions(int level) {
   const auto known = positions_.find(level);
   if (known != positions_.end()) return known->second;
   RoundedPositions result;
-  result.lattice = LatticeOfStep(box_, box_.range * std::exp2(-static_cast<float>(level) / kLevelsPerBit));
+  result.lattice = LatticeAt(level);
   result.moved = descent_->On(result.lattice);
   const std::vector<std::vector<Vec3f>>& moved = result.moved;
   double squares = 0.0, area_sum = 0.0, flipped = 0.0;

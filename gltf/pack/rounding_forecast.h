@@ -29,7 +29,8 @@ class RoundingForecast {
   // Refers to its arguments.
   RoundingForecast(const std::vector<const Primitive*>& primitives, const std::vector<RoundedAttribute>& attributes);
 
-  // Lattice over the box of all positions in steps of its longest side / 2^(level / kLevelsPerBit); level >= 1.
+  // Over the box of all positions in steps of its longest side / 2^(level / kLevelsPerBit); level >= 1.
+  Lattice LatticeAt(int level) const;
   const RoundedPositions& Positions(int level);
 
   // Of each part of an attribute the values fitted to where Positions(level) are, not rounded.
