@@ -33,7 +33,7 @@ void ZeroLevelCandidate::FitForRate(double lattice_distortion, int rounds) {
   const RateModel rate = RateModel::For(lattice_distortion, mesh_.positions.size());
   distortion_per_bit_ = rate.distortion_per_bit;
   if (source_ == Source::kSimplified) {
-    if (FlipEdges(target_, rate, &mesh_) > 0) neighbors_.emplace(mesh_);
+    if (EdgeFlipper(target_, &mesh_).Flip(rate) > 0) neighbors_.emplace(mesh_);
     FitToSurface(target_, *neighbors_, rate, rounds, &mesh_);
   }
   model_ = target_.ModelAt(mesh_, *neighbors_);

@@ -23,18 +23,53 @@ namespace {
 
 constexpr uint32_t kNone = SurfacePoint::kNone;
 constexpr size_t kGrain = 64;  // of work for a thread
+constexpr uint64_t kPointsOfFace = 6;  // that tell how far a triangle is from the input
+
+Vec3d Vertex(const TriangleMesh& mesh, uint32_t v) { return Vec3Cast<double>(mesh.positions[v]); }
+
+Vec3f PointOfFace(const TriangleMesh& mesh, const Triangle& t, uint64_t i) {
+  const Vec3d weights = TrianglePoint(i, 0.5);
+  return Vec3Cast<float>(Vertex(mesh, t[0]) * weights[0] + Vertex(mesh, t[1]) * weights[1] + Vertex(mesh, t[2]) * weights[2]);
+}
+
+double DoubledArea(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const Triangle& t : mesh.triangles) area += Norm(AreaVector(mesh.positions, t));
+  return area;
+}
+
+// Which of two triangles is closer to a point, and its squared distance.
+std::pair<size_t, double> CloserOf(const TriangleMesh& mesh, const std::array<Triangle, 2>& triangles, const Vec3f& point) {
+  std::pair<size_t, double> result{0, std::numeric_limits<double>::infinity()};
+  for (size_t i = 0; i < 2; ++i) {
+    const Triangle& t = triangles[i];
+    ClosestWeights closest;
+    const bool is_closer = ClosestOnTriangle(Vec3Cast<double>(point), Vertex(mesh, t[0]), Vertex(mesh, t[1]), Vertex(mesh, t[2]), result.second, &closest);
+    if (is_closer && closest.squared_distance < result.second) result = {i, closest.squared_distance};
+  }
+  return result;
+}
+
+}  // namespace
 
 // An edge from a to b of the triangle abc, and from b to a of the triangle bad.
-struct Edge {
+struct EdgeFlipper::Edge {
   uint32_t a = kNone, b = kNone, c = kNone, d = kNone;
   std::array<uint32_t, 2> faces{kNone, kNone};
   std::array<uint32_t, 4> beyond{kNone, kNone, kNone, kNone};  // the corners on the other sides of bc, ca, ad and db, where there is one triangle
 
   std::array<Triangle, 2> Flipped() const { return {Triangle{a, d, c}, Triangle{d, b, c}}; }
+
+  static std::vector<Edge> FindAll(const TriangleMesh& mesh, const MeshNeighbors& neighbors);
+};
+
+struct EdgeFlipper::Turn {
+  Edge edge;
+  double gain = 0;
 };
 
 // Of edges of the mesh, those that may be turned.
-std::vector<Edge> FindEdges(const TriangleMesh& mesh, const MeshNeighbors& neighbors) {
+std::vector<EdgeFlipper::Edge> EdgeFlipper::Edge::FindAll(const TriangleMesh& mesh, const MeshNeighbors& neighbors) {
   std::vector<Edge> all(neighbors.edges.size());
   std::vector<uint8_t> num_faces(all.size(), 0);  // 3: as good as any number of them
   for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
@@ -73,64 +108,27 @@ std::vector<Edge> FindEdges(const TriangleMesh& mesh, const MeshNeighbors& neigh
   return result;
 }
 
-constexpr uint64_t kPointsOfFace = 6;  // that tell how far a triangle is from the input
-
-Vec3f PointOfFace(const TriangleMesh& mesh, const Triangle& t, uint64_t i) {
-  const Vec3d weights = TrianglePoint(i, 0.5);
-  Vec3d point;
-  for (int k = 0; k < 3; ++k) point += Vec3Cast<double>(mesh.positions[t[k]]) * weights[k];
-  return Vec3Cast<float>(point);
-}
-
-// How far a triangle is from the input.
-struct FaceDistance {
-  double mean_square = 0;
-  uint32_t near = kNone;  // a face of the input there
-};
-
-FaceDistance DistanceOfFace(const FitTarget& target, const TriangleMesh& mesh, uint32_t face, uint32_t hint) {
-  FaceDistance result{0, hint};
-  for (uint64_t i = 0; i < kPointsOfFace; ++i) {
-    result.mean_square += target.SquaredDistance(PointOfFace(mesh, mesh.triangles[face], i), &result.near) / kPointsOfFace;
-  }
-  return result;
-}
-
-std::vector<FaceDistance> DistancesOfFaces(const FitTarget& target, const TriangleMesh& mesh) {
-  std::vector<FaceDistance> result(mesh.triangles.size());
-  tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(result.size()), kGrain), [&](const tbb::blocked_range<uint32_t>& range) {
-    uint32_t hint = kNone;
-    for (uint32_t f = range.begin(); f != range.end(); ++f) {
-      result[f] = DistanceOfFace(target, mesh, f, hint);
-      hint = result[f].near;
-    }
-  });
-  return result;
-}
-
-// What flips of single edges of a mesh are worth.
-class FlipMeter {
+// What flips of single edges are worth.
+class EdgeFlipper::Meter {
  public:
-  // distances: of the mesh's faces.
-  FlipMeter(const FitTarget& target, const RateModel& rate, const TriangleMesh& mesh, const MeshNeighbors& neighbors,
-            const std::vector<FaceDistance>& distances)
-      : target_(target),
+  Meter(const EdgeFlipper& flipper, const RateModel& rate, const MeshNeighbors& neighbors)
+      : target_(flipper.target_),
         rate_(rate),
-        mesh_(mesh),
+        mesh_(flipper.mesh_),
         neighbors_(neighbors),
-        distances_(distances),
-        hits_(target.HitsOn(mesh)),
-        first_(mesh.triangles.size() + 1, 0) {
+        distances_(flipper.distances_),
+        hits_(flipper.hits_),
+        first_(mesh_.triangles.size() + 1, 0),
+        doubled_area_(DoubledArea(mesh_)) {
     for (const FitTarget::Hit& hit : hits_) {
       if (hit.face != kNone) ++first_[hit.face + 1];
     }
-    for (size_t f = 0; f < mesh.triangles.size(); ++f) first_[f + 1] += first_[f];
+    for (size_t f = 0; f < mesh_.triangles.size(); ++f) first_[f + 1] += first_[f];
     order_.resize(first_.back());
     std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
     for (uint32_t i = 0; i < hits_.size(); ++i) {
       if (hits_[i].face != kNone) order_[next[hits_[i].face]++] = i;
     }
-    for (const Triangle& t : mesh.triangles) doubled_area_ += Norm(AreaVector(mesh.positions, t));
   }
 
   // What the sum of both mean squared distances falls by, and what the bits saved are worth besides; not above 0 where the edge has to stay.
@@ -147,7 +145,7 @@ class FlipMeter {
   }
 
  private:
-  Vec3d At(uint32_t v) const { return Vec3Cast<double>(mesh_.positions[v]); }
+  Vec3d At(uint32_t v) const { return Vertex(mesh_, v); }
 
   bool LookAway(const std::array<Triangle, 2>& old, const std::array<Triangle, 2>& flipped) const {
     constexpr double kLeastCosine = 0.2;
@@ -168,13 +166,7 @@ class FlipMeter {
       for (uint32_t i = first_[f]; i < first_[f + 1]; ++i) {
         const FitTarget::Hit& hit = hits_[order_[i]];
         now += hit.share * hit.squared_distance;
-        double least = std::numeric_limits<double>::infinity();
-        for (const Triangle& t : flipped) {
-          ClosestWeights closest;
-          const bool is_closer = ClosestOnTriangle(Vec3Cast<double>(hit.position), At(t[0]), At(t[1]), At(t[2]), least, &closest);
-          if (is_closer) least = std::min(least, closest.squared_distance);
-        }
-        then += hit.share * least;
+        then += hit.share * CloserOf(mesh_, flipped, hit.position).second;
       }
     }
     return {now, then};
@@ -216,58 +208,90 @@ class FlipMeter {
   const TriangleMesh& mesh_;
   const MeshNeighbors& neighbors_;
   const std::vector<FaceDistance>& distances_;
-  const std::vector<FitTarget::Hit> hits_;
+  const std::vector<FitTarget::Hit>& hits_;
   std::vector<uint32_t> first_, order_;  // hits on face f: order_[first_[f]] .. order_[first_[f + 1] - 1]
-  double doubled_area_ = 0;
+  const double doubled_area_;
 };
 
-struct Flip {
-  Edge edge;
-  double gain = 0;
-};
-
-// Those that gain, the best first, of edges near vertices that are marked.
-std::vector<Flip> FindFlips(const FitTarget& target, const RateModel& rate, const TriangleMesh& mesh, const std::vector<FaceDistance>& distances,
-                            const std::vector<uint8_t>& is_marked) {
-  const MeshNeighbors neighbors(mesh);
-  const FlipMeter meter(target, rate, mesh, neighbors, distances);
-  std::vector<Flip> flips;
-  for (const Edge& edge : FindEdges(mesh, neighbors)) {
-    if ((is_marked[edge.a] | is_marked[edge.b] | is_marked[edge.c] | is_marked[edge.d]) != 0) flips.push_back({edge, 0});
-  }
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, flips.size(), kGrain), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t i = range.begin(); i != range.end(); ++i) flips[i].gain = meter.Gain(flips[i].edge);
+EdgeFlipper::EdgeFlipper(const FitTarget& target, TriangleMesh* mesh)
+    : target_(target), mesh_(*mesh), distances_(mesh->triangles.size()), hits_(target.HitsOn(*mesh)) {
+  tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(distances_.size()), kGrain), [&](const tbb::blocked_range<uint32_t>& range) {
+    uint32_t hint = kNone;
+    for (uint32_t f = range.begin(); f != range.end(); ++f) {
+      distances_[f] = DistanceOf(f, hint);
+      hint = distances_[f].near;
+    }
   });
-  flips.erase(std::remove_if(flips.begin(), flips.end(), [](const Flip& flip) { return !(flip.gain > 0); }), flips.end());
-  std::stable_sort(flips.begin(), flips.end(), [](const Flip& x, const Flip& y) { return x.gain > y.gain; });
-  return flips;
 }
 
-}  // namespace
+EdgeFlipper::FaceDistance EdgeFlipper::DistanceOf(uint32_t face, uint32_t hint) const {
+  FaceDistance result{0, hint};
+  for (uint64_t i = 0; i < kPointsOfFace; ++i) {
+    result.mean_square += target_.SquaredDistance(PointOfFace(mesh_, mesh_.triangles[face], i), &result.near) / kPointsOfFace;
+  }
+  return result;
+}
 
-size_t FlipEdges(const FitTarget& target, const RateModel& rate, TriangleMesh* mesh) {
+double EdgeFlipper::Distortion() const {
+  double forward = 0, backward = 0;
+  for (const FitTarget::Hit& hit : hits_) forward += hit.share * hit.squared_distance;
+  const double doubled_area = DoubledArea(mesh_);
+  if (!(doubled_area > 0)) return target_.diagonal() * target_.diagonal();
+  for (size_t f = 0; f < distances_.size(); ++f) backward += Norm(AreaVector(mesh_.positions, mesh_.triangles[f])) / doubled_area * distances_[f].mean_square;
+  return std::max(forward, backward);
+}
+
+// Those that gain, the best first, of edges near vertices that are marked.
+std::vector<EdgeFlipper::Turn> EdgeFlipper::FindTurns(const RateModel& rate, const std::vector<uint8_t>& is_marked) const {
+  const MeshNeighbors neighbors(mesh_);
+  const Meter meter(*this, rate, neighbors);
+  std::vector<Turn> turns;
+  for (const Edge& edge : Edge::FindAll(mesh_, neighbors)) {
+    if ((is_marked[edge.a] | is_marked[edge.b] | is_marked[edge.c] | is_marked[edge.d]) != 0) turns.push_back({edge, 0});
+  }
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, turns.size(), kGrain), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t i = range.begin(); i != range.end(); ++i) turns[i].gain = meter.Gain(turns[i].edge);
+  });
+  turns.erase(std::remove_if(turns.begin(), turns.end(), [](const Turn& turn) { return !(turn.gain > 0); }), turns.end());
+  std::stable_sort(turns.begin(), turns.end(), [](const Turn& x, const Turn& y) { return x.gain > y.gain; });
+  return turns;
+}
+
+// Samples stay with the two faces of an edge that was turned, for the closer one. turned_with: of each face the other one, or kNone.
+void EdgeFlipper::GiveHits(const std::vector<uint32_t>& turned_with) {
+  for (FitTarget::Hit& hit : hits_) {
+    if (hit.face == kNone || turned_with[hit.face] == kNone) continue;
+    const std::array<uint32_t, 2> faces{hit.face, turned_with[hit.face]};
+    const auto [closer, squared_distance] = CloserOf(mesh_, {mesh_.triangles[faces[0]], mesh_.triangles[faces[1]]}, hit.position);
+    hit.face = faces[closer];
+    hit.squared_distance = squared_distance;
+  }
+}
+
+size_t EdgeFlipper::Flip(const RateModel& rate) {
   constexpr int kMostPasses = 3;
   size_t num_flipped = 0;
-  std::vector<FaceDistance> distances = DistancesOfFaces(target, *mesh);
-  std::vector<uint8_t> is_changed(mesh->positions.size(), 1);  // by the last pass: elsewhere nothing gained then, nor does it now
+  std::vector<uint8_t> is_changed(mesh_.positions.size(), 1);  // by the last pass: elsewhere nothing gained then, nor does it now
   for (int pass = 0; pass < kMostPasses; ++pass) {
     const size_t before = num_flipped;
-    const std::vector<Flip> flips = FindFlips(target, rate, *mesh, distances, is_changed);
+    const std::vector<Turn> turns = FindTurns(rate, is_changed);
     std::fill(is_changed.begin(), is_changed.end(), uint8_t{0});
-    std::vector<uint8_t> is_taken(mesh->triangles.size(), 0);
+    std::vector<uint32_t> turned_with(mesh_.triangles.size(), kNone);
     std::set<std::pair<uint32_t, uint32_t>> made;  // edges
-    for (const auto& [edge, gain] : flips) {
+    for (const auto& [edge, gain] : turns) {
       const auto [first, second] = edge.faces;
-      if (is_taken[first] != 0 || is_taken[second] != 0 || !made.emplace(std::minmax(edge.c, edge.d)).second) continue;
-      is_taken[first] = is_taken[second] = 1;
+      if (turned_with[first] != kNone || turned_with[second] != kNone || !made.emplace(std::minmax(edge.c, edge.d)).second) continue;
+      turned_with[first] = second;
+      turned_with[second] = first;
       const std::array<Triangle, 2> flipped = edge.Flipped();
-      mesh->triangles[first] = flipped[0];
-      mesh->triangles[second] = flipped[1];
-      for (const uint32_t f : edge.faces) distances[f] = DistanceOfFace(target, *mesh, f, distances[f].near);
+      mesh_.triangles[first] = flipped[0];
+      mesh_.triangles[second] = flipped[1];
+      for (const uint32_t f : edge.faces) distances_[f] = DistanceOf(f, distances_[f].near);
       for (const uint32_t v : {edge.a, edge.b, edge.c, edge.d}) is_changed[v] = 1;
       ++num_flipped;
     }
     if (num_flipped == before) break;
+    GiveHits(turned_with);
   }
   return num_flipped;
 }

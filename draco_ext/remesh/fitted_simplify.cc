@@ -23,7 +23,8 @@ FittedSimplification::Step FittedSimplification::Fitted(TriangleMesh mesh, uint3
   target_->Resample(std::clamp(kSamplesPerTriangle * mesh.triangles.size(), options_.fewest_samples, options_.most_samples));
   FitToSurface(*target_, MeshNeighbors(mesh), RateModel(), kRounds, &mesh);
   constexpr double kLatticeShare = 0.28;  // of what the fit is off by: what streams at a target mostly come to
-  FlipEdges(*target_, RateModel::For(kLatticeShare * target_->DistortionAt(mesh), mesh.positions.size()), &mesh);
+  EdgeFlipper flipper(*target_, &mesh);
+  flipper.Flip(RateModel::For(kLatticeShare * flipper.Distortion(), mesh.positions.size()));
   return {num_triangles, SimplificationSequence(mesh)};
 }
 

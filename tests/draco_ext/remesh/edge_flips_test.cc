@@ -18,7 +18,7 @@ namespace {
 TriangleMesh Roof(float height) { return {{{-1, 0.5f, 0}, {0, 0, height}, {1, 0.5f, 0}, {0, 1, height}}, {{0, 1, 3}, {2, 3, 1}}}; }
 TriangleMesh CutOff(float height) { return {Roof(height).positions, {{0, 1, 2}, {2, 3, 0}}}; }
 
-size_t Flip(const TriangleMesh& input, const RateModel& rate, TriangleMesh* mesh) { return FlipEdges(FitTarget(input, 2000), rate, mesh); }
+size_t Flip(const TriangleMesh& input, const RateModel& rate, TriangleMesh* mesh) { return EdgeFlipper(FitTarget(input, 2000), mesh).Flip(rate); }
 
 double Distance(const TriangleMesh& a, const TriangleMesh& b) { return MeasureSurfaceDistance(a, b, SurfaceDistanceOptions::RmsOnly(20000)).value().Rms(); }
 
