@@ -18,7 +18,7 @@ double Distortion(const DistanceModel& model) { return std::max(model.forward, m
 
 ZeroLevelCandidate::ZeroLevelCandidate(const FitTarget& target, TriangleMesh mesh, Source source)
     : target_(target), mesh_(std::move(mesh)), source_(source) {
-  constexpr int kRounds = 2;
+  constexpr int kRounds = 1;
   if (mesh_.triangles.size() <= kMostFittedTriangles) {
     mesh_.triangles = ByNearestComponents(mesh_, kManyComponents);
     neighbors_.emplace(mesh_);
