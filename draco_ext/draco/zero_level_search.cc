@@ -5,6 +5,8 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "draco/decoded_distance.h"
@@ -80,18 +82,30 @@ class ZeroLevelSearch {
   }
 
   // The stream of the best size, or where that misses the PSNR after all, of a larger one that meets it, as long as it takes fewer than
-  // `most_bytes`: few samples judge sizes, and may overlook a small part of the surface that is far off.
+  // `most_bytes`; and where it takes more than another size seemed to, of that, if it is smaller: few samples judge sizes, and may overlook a small part
+  // of the surface that is far off.
   StatusOr<ZeroLevelStream> Finish(double most_bytes) {
     LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, FinishBest());
+    const auto compare_with_best = [&]() -> Status {
+      LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream other, FinishBest());
+      const int measurements = stream.measurements + other.measurements;
+      if (IsBetter(OutcomeOf(other), OutcomeOf(stream), target_)) stream = std::move(other);
+      stream.measurements = measurements;
+      return Status();
+    };
     const auto is_to_grow = [&] {
       return !target_.is_rate && !stream.meets_target && best_ < mesh_.triangles.size() && static_cast<double>(stream.stream.size()) < most_bytes;
     };
     while (is_to_grow()) {
       LACERTA_RETURN_IF_ERROR(Grow(Square(stream.distance)));
-      LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream larger, FinishBest());
-      const int measurements = stream.measurements + larger.measurements;
-      if (IsBetter(OutcomeOf(larger), OutcomeOf(stream), target_)) stream = std::move(larger);
-      stream.measurements = measurements;
+      LACERTA_RETURN_IF_ERROR(compare_with_best());
+    }
+    for (std::set<uint32_t> finished{best_}; !target_.is_rate;) {
+      const std::optional<uint32_t> next = SmallestOtherThan(finished, stream.stream.size());
+      if (!next) break;
+      Choose(*next);
+      finished.insert(*next);
+      LACERTA_RETURN_IF_ERROR(compare_with_best());
     }
     return stream;
   }
@@ -166,10 +180,24 @@ class ZeroLevelSearch {
     const double ratio = std::clamp(std::pow(distortion / distortion_, 1 / kFall), kNarrowRatio, 2.0);
     const uint32_t larger = std::max(Clamped(best_ * ratio), Clamped(best_ + 1.0));
     LACERTA_RETURN_IF_ERROR(Look(larger));
-    if (best_ == larger) return Status();
-    best_ = larger;
-    best_candidate_ = CandidateOf(larger);  // FinishBest fits it for its rate
+    if (best_ != larger) Choose(larger);
     return Status();
+  }
+
+  void Choose(uint32_t triangles) {
+    best_ = triangles;
+    best_candidate_ = CandidateOf(triangles);  // FinishBest fits it for its rate
+  }
+
+  // The size, of those that were tried and seemed to meet the PSNR in fewer than so many bytes, that seemed to take the fewest.
+  std::optional<uint32_t> SmallestOtherThan(const std::set<uint32_t>& finished, size_t bytes) const {
+    std::optional<uint32_t> smallest;
+    for (const auto& [size, trial] : tried_) {
+      if (!trial.meets || trial.bytes >= bytes || finished.count(size) != 0) continue;
+      bytes = trial.bytes;
+      smallest = size;
+    }
+    return smallest;
   }
 
   // Where the fit takes the share of the distance that it takes at the best sizes of most surfaces.
