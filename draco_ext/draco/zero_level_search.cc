@@ -323,7 +323,9 @@ class ZeroLevelSearch {
     int measurements = 0;
     double best_distortion = 0;
     TriedStep met, missed;  // the largest step at the target, the smallest beyond it
+    const auto is_out_of_reach = [&] { return !target_.is_rate && !best->meets_target && bias * candidate.fit_distortion() > distortion_; };  // at any step
     for (int i = 0; i < num_tries || (!best->meets_target && i < 2 * num_tries); ++i) {
+      if (i > 1 && is_out_of_reach()) break;
       LACERTA_ASSIGN_OR_RETURN(ZeroLevelCandidate::Coding coding, candidate.Code(step, descent_rounds, CodingEffort::kFull, target_.base_coding));
       const double distortion = bias * coding.distortion;
       const auto bytes = static_cast<double>(coding.bytes);
