@@ -18,26 +18,26 @@ double Distortion(const DistanceModel& model) { return std::max(model.forward, m
 
 ZeroLevelCandidate::ZeroLevelCandidate(const FitTarget& target, TriangleMesh mesh, Source source)
     : target_(target), mesh_(std::move(mesh)), source_(source) {
-  constexpr int kRounds = 1;
+  const int rounds = source_ == Source::kFitted ? 1 : 2;
   if (mesh_.triangles.size() <= kMostFittedTriangles) {
     mesh_.triangles = ByNearestComponents(mesh_, kManyComponents);
     neighbors_.emplace(mesh_);
-    if (source_ == Source::kSimplified) FitToSurface(target_, *neighbors_, RateModel(), kRounds, &mesh_);
+    if (source_ != Source::kInput) FitToSurface(target_, *neighbors_, RateModel(), rounds, &mesh_);
     model_ = target_.ModelAt(mesh_, *neighbors_);
   }
-  if (source_ == Source::kSimplified) fit_distortion_ = neighbors_ ? Distortion(model_) : target_.DistortionAt(mesh_);
+  if (source_ != Source::kInput) fit_distortion_ = neighbors_ ? Distortion(model_) : target_.DistortionAt(mesh_);
 }
 
 void ZeroLevelCandidate::FitForRate(double lattice_distortion, int rounds) {
   if (!neighbors_) return;
   const RateModel rate = RateModel::For(lattice_distortion, mesh_.positions.size());
   distortion_per_bit_ = rate.distortion_per_bit;
-  if (source_ == Source::kSimplified) {
+  if (source_ != Source::kInput) {
     if (EdgeFlipper(target_, &mesh_).Flip(rate) > 0) neighbors_.emplace(mesh_);
     FitToSurface(target_, *neighbors_, rate, rounds, &mesh_);
   }
   model_ = target_.ModelAt(mesh_, *neighbors_);
-  if (source_ == Source::kSimplified) fit_distortion_ = Distortion(model_);
+  if (source_ != Source::kInput) fit_distortion_ = Distortion(model_);
 }
 
 StatusOr<ZeroLevelCandidate::Coding> ZeroLevelCandidate::Code(double step, int rounds, CodingEffort effort,

@@ -24,8 +24,11 @@ class ZeroLevelCandidate {
     CodedZeroLevel coded;
   };
 
-  // Whether `mesh` is the input as it is: then there is nothing to fit.
-  enum class Source { kInput, kSimplified };
+  enum class Source {
+    kInput,       // as it is: there is nothing to fit
+    kSimplified,
+    kFitted,      // simplified a little after it was fitted
+  };
 
   // target: must outlive the candidate.
   ZeroLevelCandidate(const FitTarget& target, TriangleMesh mesh, Source source);

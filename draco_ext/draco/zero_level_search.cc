@@ -169,7 +169,7 @@ class ZeroLevelSearch {
   // With samples for its size.
   std::unique_ptr<ZeroLevelCandidate> CandidateOf(uint32_t triangles) {
     using Source = ZeroLevelCandidate::Source;
-    const Source source = triangles >= mesh_.triangles.size() ? Source::kInput : Source::kSimplified;
+    const Source source = triangles >= mesh_.triangles.size() ? Source::kInput : simplified_->IsOfStep(triangles) ? Source::kFitted : Source::kSimplified;
     TriangleMesh simplified = simplified_->MeshWith(triangles);
     TakeSamples(4, triangles);
     return std::make_unique<ZeroLevelCandidate>(fit_target_, std::move(simplified), source);

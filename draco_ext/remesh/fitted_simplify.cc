@@ -29,7 +29,7 @@ FittedSimplification::Step FittedSimplification::Fitted(TriangleMesh mesh, uint3
 }
 
 TriangleMesh FittedSimplification::MeshWith(uint32_t num_triangles) {
-  if (num_triangles > options_.largest || num_triangles >= sequence_.num_input_triangles()) return sequence_.MeshWith(num_triangles);
+  if (!IsOfStep(num_triangles)) return sequence_.MeshWith(num_triangles);
   if (steps_.empty()) steps_.push_back(Fitted(sequence_.MeshWith(options_.largest), options_.largest));
   for (;;) {
     const auto next = static_cast<uint32_t>(kStepRatio * steps_.back().num_triangles);

@@ -27,6 +27,8 @@ class FittedSimplification {
   // As SimplificationSequence::MeshWith; not fitted at this size. Steps are taken down to it and kept; which ones does not depend on what was
   // asked for before.
   TriangleMesh MeshWith(uint32_t num_triangles);
+  // Whether MeshWith makes such a mesh of a fitted one.
+  bool IsOfStep(uint32_t num_triangles) const { return num_triangles <= options_.largest && num_triangles < sequence_.num_input_triangles(); }
 
  private:
   struct Step {
