@@ -2,6 +2,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mesh_file/binary_off_reader.h"
 #include "mesh_file/mesh_builder.h"
 #include "mesh_file/readers.h"
 #include "mesh_file/text_scanner.h"
@@ -27,15 +28,21 @@ std::string_view TakeKeyword(std::string_view* line) {
   return word.substr(0, end);
 }
 
-// [ST][C][N][4][n]OFF: texture coordinates, colours and normals come after the position and are left aside.
-Status CheckKeyword(std::string_view keyword, std::vector<std::string>* notes) {
+// [ST][C][N][4][n]OFF: texture coordinates, colours and normals come after the position and are left aside. numbers_per_vertex: of all these.
+Status CheckKeyword(std::string_view keyword, std::vector<std::string>* notes, uint64_t* numbers_per_vertex) {
   if (keyword.size() < 3 || keyword.substr(keyword.size() - 3) != "OFF") {
     return InvalidData("does not begin with OFF; this is no OFF file");
   }
   std::string_view prefix = keyword.substr(0, keyword.size() - 3);
-  if (prefix.substr(0, 2) == "ST") prefix.remove_prefix(2);
-  if (prefix.substr(0, 1) == "C") prefix.remove_prefix(1);
-  if (prefix.substr(0, 1) == "N") prefix.remove_prefix(1);
+  *numbers_per_vertex = 3;
+  const auto take = [&](std::string_view letters, uint64_t numbers) {
+    if (prefix.substr(0, letters.size()) != letters) return;
+    prefix.remove_prefix(letters.size());
+    *numbers_per_vertex += numbers;
+  };
+  take("ST", 2);
+  take("C", 4);
+  take("N", 3);
   if (prefix.empty()) {
     if (keyword.size() > 3) notes->push_back("of " + std::string(keyword) + " vertices the positions alone are read");
     return Status();
@@ -87,10 +94,14 @@ Status ReadAll(TextScanner* scanner, const PositionRules& rules, FileSurface* su
   TriangleMesh* const mesh = &surface->surface;
   std::string_view line;
   LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
-  LACERTA_RETURN_IF_ERROR(CheckKeyword(TakeKeyword(&line), &surface->notes));
+  uint64_t numbers_per_vertex = 0;
+  LACERTA_RETURN_IF_ERROR(CheckKeyword(TakeKeyword(&line), &surface->notes, &numbers_per_vertex));
   std::string_view rest = line;
   const std::string_view next = TakeWord(&rest);
-  if (next == "BINARY") return Unsupported("binary OFF is not read; convert it to text");
+  if (next == "BINARY") {
+    const std::string_view body = scanner->rest();
+    return ReadBinaryOff({reinterpret_cast<const uint8_t*>(body.data()), body.size()}, numbers_per_vertex, rules, mesh);
+  }
   if (next.empty()) LACERTA_RETURN_IF_ERROR(NextDataLine(scanner, &line));
   uint64_t num_vertices = 0;
   uint64_t num_faces = 0;

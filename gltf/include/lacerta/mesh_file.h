@@ -17,7 +17,7 @@ namespace lacerta {
 enum class MeshFormat {
   kPly,   // ascii, binary little and big endian
   kObj,   // Wavefront
-  kOff,   // OFF, COFF, NOFF, STOFF in text form
+  kOff,   // OFF, COFF, NOFF, STOFF; ascii, binary in either byte order
   kStl,   // ascii and binary; corners at one place become one vertex
   kDrc,   // a stream of ours in either form, or any stock Draco mesh; finest level
   kGltf,  // glb or gltf: the triangle primitives of the default scene with the transforms of their nodes
