@@ -60,6 +60,7 @@ struct EdgeFlipper::Edge {
 
   std::array<Triangle, 2> Flipped() const { return {Triangle{a, d, c}, Triangle{d, b, c}}; }
 
+  // Those of the mesh that may be turned.
   static std::vector<Edge> FindAll(const TriangleMesh& mesh, const MeshNeighbors& neighbors);
 };
 
@@ -68,7 +69,6 @@ struct EdgeFlipper::Turn {
   double gain = 0;
 };
 
-// Of edges of the mesh, those that may be turned.
 std::vector<EdgeFlipper::Edge> EdgeFlipper::Edge::FindAll(const TriangleMesh& mesh, const MeshNeighbors& neighbors) {
   std::vector<Edge> all(neighbors.edges.size());
   std::vector<uint8_t> num_faces(all.size(), 0);  // 3: as good as any number of them

@@ -18,7 +18,8 @@ class EdgeFlipper {
   // mesh: no triangle with a repeated vertex. Both must outlive this.
   EdgeFlipper(const FitTarget& target, TriangleMesh* mesh);
 
-  // Squared distance d_S of the mesh to the input, model units, by the target's samples and some on each triangle.
+  // Squared distance d_S of the mesh to the input, model units, by the target's samples and a few on each triangle: up to a third more than
+  // FitTarget::DistortionAt, since these lie off its corners, and at no cost.
   double Distortion() const;
 
   // Turns edges ("edge swap" [Hoppe et al. 1993, section 4.2]) where that lowers the distance to the input, or the bits of `rate` and of the connectivity for little

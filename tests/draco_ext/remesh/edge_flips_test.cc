@@ -105,6 +105,26 @@ TEST(EdgeFlipsTest, SimplifiedMeshesTakeFewerBitsForLittleDistanceAndStayClosed)
   }
 }
 
+TEST(EdgeFlipsTest, KnowsHowFarTheMeshIsBeforeAndAfter) {
+  for (const TriangleMesh& input : {shapes::BumpySphere(5, 0.2f), shapes::Torus(80, 40, 1.0f, 0.4f)}) {
+    TriangleMesh mesh = SimplificationSequence(input).MeshWith(600);
+    const FitTarget target(input, 6000);
+    EdgeFlipper flipper(target, &mesh);
+    for (const bool is_flipped : {false, true}) {
+      if (is_flipped) {
+        EXPECT_GT(flipper.Flip(UsualRate(input, mesh)), 5u);
+      }
+      const double distortion = target.DistortionAt(mesh);
+      EXPECT_GT(flipper.Distortion(), 0.95 * distortion);
+      EXPECT_LT(flipper.Distortion(), 1.35 * distortion);
+      EXPECT_NEAR(flipper.Distortion(), EdgeFlipper(target, &mesh).Distortion(), 1e-3 * distortion);  // samples stay with the faces that are turned
+    }
+  }
+  TriangleMesh flat{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};  // no area
+  const TriangleMesh sphere = shapes::Icosphere(2);
+  EXPECT_GT(EdgeFlipper(FitTarget(sphere, 2000), &flat).Distortion(), 4);
+}
+
 TEST(EdgeFlipsTest, SimplifiedMeshesComeNearerWhereBitsDoNotMatter) {
   for (const TriangleMesh& input : {shapes::BumpySphere(5, 0.2f), shapes::Torus(80, 40, 1.0f, 0.4f)}) {
     TriangleMesh mesh = SimplificationSequence(input).MeshWith(600);
