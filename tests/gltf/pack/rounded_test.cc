@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "decoder/smooth_normals.h"
@@ -44,6 +45,27 @@ SurfaceErrors Seen(const Primitive& original, const Primitive& decoded, const Te
 double StepOf(const RoundedFamily& family) {
   const Lattice& lattice = family.precisions[0].positions;
   return static_cast<double>(lattice.range) / static_cast<double>((int64_t{1} << lattice.bits) - 1);
+}
+
+TEST(Rounded, IsGivenUpWhereItTakesFarMore) {
+  Primitive primitive = Textured(1.0f);
+  primitive.attributes.resize(1);  // values of others descend to far less than what is compared
+  const FamilyMeter meter({&primitive}, DistanceOfPsnr(50.0, BoundingBoxDiagonal(Surface(primitive))), {}, 1024, [](size_t, uint64_t set) { return Texels(set); });
+  const auto within = [&](uint64_t most_bytes) { return RoundFamily(meter.primitives(), meter, nullptr, {}, nullptr, most_bytes); };
+  const auto free = RoundFamily(meter.primitives(), meter);
+  ASSERT_TRUE(free.ok()) << free.status().message();
+  const uint64_t bytes = free.value().members[0].bytes.size();
+  const auto enough = within(bytes);
+  ASSERT_TRUE(enough.ok()) << enough.status().message();
+  EXPECT_EQ(enough.value().members[0].bytes, free.value().members[0].bytes);
+  for (const uint64_t share : {2, 20}) {  // by what precisions take, and by positions alone that are far too coarse
+    const Status refused = within(bytes / share).status();
+    EXPECT_EQ(refused.code(), StatusCode::kUnsupported) << share;
+    EXPECT_NE(refused.message().find("it would be larger (about "), std::string::npos) << refused.message();
+    const uint64_t told = std::stoull(refused.message().substr(refused.message().find("about ") + 6));
+    EXPECT_GT(told, bytes / share) << share;
+    EXPECT_LT(told, 1.1 * static_cast<double>(bytes)) << share;
+  }
 }
 
 TEST(Rounded, PositionsThatSlideUnderTheTextureGetMoreBits) {
