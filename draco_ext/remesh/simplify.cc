@@ -56,7 +56,7 @@ class Simplifier {
   void ClassifyEdges();
   Quadric QuadricOf(uint32_t v);
   Placement Place(uint32_t u, uint32_t v, const Quadric& quadric) const;
-  void Push(uint32_t u, uint32_t v, const Quadric& of_u);
+  void Push(uint32_t u, uint32_t v);
   void PushAround(uint32_t v);
   std::vector<uint32_t> TrianglesOf(uint32_t v);
   Effect EffectOf(uint32_t u, uint32_t v, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v);
@@ -79,6 +79,7 @@ class Simplifier {
   std::vector<Triangle> triangles_;
   std::vector<uint8_t> dead_;  // per triangle
   std::vector<Quadric> remembered_;  // per vertex: planes of the input, of all vertices that came together in it
+  std::vector<Quadric> quadrics_;    // per vertex: QuadricOf
   CornerRings rings_;
   std::vector<uint32_t> version_, mark_;
   std::vector<uint32_t> valence_;  // living triangles of each vertex
@@ -87,7 +88,8 @@ class Simplifier {
   uint32_t num_alive_ = 0;
   double edge_weight_ = 0;
   CollapseQueue<EdgeCandidate> queue_;
-  std::vector<uint32_t> ring_;  // corners of the vertex that is looked at
+  std::vector<uint32_t> ring_;    // corners of the vertex that is looked at
+  std::vector<uint32_t> killed_;  // triangles, by the collapse that is made
   FoldedSpokes spokes_;
 };
 
@@ -97,6 +99,7 @@ Simplifier::Simplifier(const TriangleMesh& mesh, const std::vector<uint8_t>& hel
       triangles_(mesh.triangles),
       dead_(mesh.triangles.size(), 0),
       remembered_(mesh.positions.size()),
+      quadrics_(mesh.positions.size()),
       rings_(mesh.positions.size(), mesh.triangles),
       version_(mesh.positions.size(), 0),
       mark_(mesh.positions.size(), 0),
@@ -124,6 +127,7 @@ void Simplifier::RememberPlanes() {
   for (uint32_t v = 0; v < remembered_.size(); ++v) {
     remembered_[v] = QuadricOf(v);
     remembered_[v] *= kRemembered;
+    quadrics_[v] = QuadricOf(v);
   }
 }
 
@@ -147,11 +151,8 @@ void Simplifier::ClassifyEdges() {
     if (end - i != 2) on_border_[u] = on_border_[v] = 1;
     i = end;
   }
-  Quadric of_low;
   for (size_t i = 0; i < sides.size(); ++i) {
-    const bool is_new_vertex = i == 0 || sides[i].low != sides[i - 1].low;
-    if (is_new_vertex) of_low = QuadricOf(sides[i].low);
-    if (is_new_vertex || sides[i].high != sides[i - 1].high) Push(sides[i].low, sides[i].high, of_low);
+    if (i == 0 || sides[i - 1] < sides[i]) Push(sides[i].low, sides[i].high);
   }
 }
 
@@ -183,15 +184,14 @@ Placement Simplifier::Place(uint32_t u, uint32_t v, const Quadric& quadric) cons
   return best;
 }
 
-// of_u: QuadricOf(u).
-void Simplifier::Push(uint32_t u, uint32_t v, const Quadric& of_u) {
+void Simplifier::Push(uint32_t u, uint32_t v) {
   if (IsHeld(u) && IsHeld(v)) return;
   if (valence_[u] + valence_[v] > kMaxRing) {
     queue_.Block({0, std::min(u, v), std::max(u, v), version_[u] + version_[v]});
     return;
   }
-  Quadric q = QuadricOf(v);
-  q += of_u;
+  Quadric q = quadrics_[v];
+  q += quadrics_[u];
   if (u > v) std::swap(u, v);
   queue_.Push({static_cast<float>(Place(u, v, q).cost), u, v, version_[u] + version_[v]});
 }
@@ -216,8 +216,16 @@ void Simplifier::PushAround(uint32_t v) {
       mark_[w] = mark;
     }
   }
-  const Quadric of_v = QuadricOf(v);
-  for (const uint32_t w : neighbors) Push(v, w, of_v);
+  std::vector<uint32_t> changed = neighbors;
+  changed.push_back(v);
+  for (const uint32_t t : killed_) {
+    for (const uint32_t w : triangles_[t]) {  // where surfaces meet at a point it may be no neighbor any more
+      if (mark_[w] != mark) changed.push_back(w);
+    }
+  }
+  killed_.clear();
+  for (const uint32_t w : changed) quadrics_[w] = QuadricOf(w);
+  for (const uint32_t w : neighbors) Push(v, w);
 }
 
 // The topology is kept under the link condition: u and v have no neighbours in common but those across their edge, and no two
@@ -294,6 +302,7 @@ void Simplifier::RemoveCoincident(uint32_t v) {
 
 void Simplifier::Kill(uint32_t t) {
   dead_[t] = 1;
+  killed_.push_back(t);
   --num_alive_;
   for (const uint32_t v : triangles_[t]) --valence_[v];
 }
@@ -371,8 +380,8 @@ void Simplifier::Run() {
       queue_.Push({static_cast<float>(now), edge.u, edge.v, edge.version});
       return true;
     };
-    Quadric quadric = QuadricOf(edge.u);
-    quadric += QuadricOf(edge.v);
+    Quadric quadric = quadrics_[edge.u];
+    quadric += quadrics_[edge.v];
     const auto [cost, position] = Place(edge.u, edge.v, quadric);
     if (is_dearer(cost)) continue;
     const std::vector<uint32_t> around_u = TrianglesOf(edge.u), around_v = TrianglesOf(edge.v);
