@@ -86,10 +86,16 @@ class ZeroLevelSearch {
   // of the surface that is far off.
   StatusOr<ZeroLevelStream> Finish(double most_bytes) {
     LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, FinishBest());
+    std::set<uint32_t> finished{best_};
+    uint32_t size = best_;  // of the stream
     const auto compare_with_best = [&]() -> Status {
+      finished.insert(best_);
       LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream other, FinishBest());
       const int measurements = stream.measurements + other.measurements;
-      if (IsBetter(OutcomeOf(other), OutcomeOf(stream), target_)) stream = std::move(other);
+      if (IsBetter(OutcomeOf(other), OutcomeOf(stream), target_)) {
+        stream = std::move(other);
+        size = best_;
+      }
       stream.measurements = measurements;
       return Status();
     };
@@ -100,13 +106,11 @@ class ZeroLevelSearch {
       LACERTA_RETURN_IF_ERROR(Grow(Square(stream.distance)));
       LACERTA_RETURN_IF_ERROR(compare_with_best());
     }
-    for (std::set<uint32_t> finished{best_}; !target_.is_rate;) {
-      const std::optional<uint32_t> next = SmallestOtherThan(finished, stream.stream.size());
-      if (!next) break;
+    while (const std::optional<uint32_t> next = SmallestOtherThan(finished, stream.stream.size())) {
       Choose(*next);
-      finished.insert(*next);
       LACERTA_RETURN_IF_ERROR(compare_with_best());
     }
+    if (best_ != size) Choose(size);
     return stream;
   }
 
@@ -189,9 +193,10 @@ class ZeroLevelSearch {
     best_candidate_ = CandidateOf(triangles);  // FinishBest fits it for its rate
   }
 
-  // The size, of those that were tried and seemed to meet the PSNR in fewer than so many bytes, that seemed to take the fewest.
+  // The size, of those that were tried and seemed to meet the PSNR in fewer than so many bytes, that seemed to take the fewest; none at a rate.
   std::optional<uint32_t> SmallestOtherThan(const std::set<uint32_t>& finished, size_t bytes) const {
     std::optional<uint32_t> smallest;
+    if (target_.is_rate) return smallest;
     for (const auto& [size, trial] : tried_) {
       if (!trial.meets || trial.bytes >= bytes || finished.count(size) != 0) continue;
       bytes = trial.bytes;

@@ -1,10 +1,11 @@
 #include "mesh_file/binary_off_reader.h"
 
 #include <array>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "mesh_file/binary_words.h"
 
 namespace lacerta {
 namespace {
@@ -23,18 +24,9 @@ class Words {
   Words(Span<const uint8_t> bytes, bool is_big_endian) : bytes_(bytes), is_big_endian_(is_big_endian) {}
 
   uint64_t size() const { return bytes_.size() / 4; }
-  uint32_t Uint(uint64_t i) const {
-    uint32_t value = 0;
-    for (size_t k = 0; k < 4; ++k) value |= static_cast<uint32_t>(bytes_[static_cast<size_t>(4 * i) + k]) << (8 * (is_big_endian_ ? 3 - k : k));
-    return value;
-  }
-  double Float(uint64_t i) const {
-    const uint32_t bits = Uint(i);
-    float value;
-    std::memcpy(&value, &bits, sizeof(value));
-    return static_cast<double>(value);
-  }
-  const void* At(uint64_t i) const { return bytes_.data() + 4 * i; }
+  uint32_t Uint(uint64_t i) const { return ReadUint32(At(i), is_big_endian_); }
+  double Float(uint64_t i) const { return static_cast<double>(ReadFloat(At(i), is_big_endian_)); }
+  const uint8_t* At(uint64_t i) const { return bytes_.data() + 4 * i; }
 
  private:
   Span<const uint8_t> bytes_;

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "geometry/position_table.h"
+#include "mesh_file/binary_words.h"
 #include "mesh_file/mesh_builder.h"
 #include "mesh_file/readers.h"
 #include "mesh_file/text_scanner.h"
@@ -13,18 +14,6 @@ namespace {
 
 constexpr size_t kHeaderSize = 84;    // 80 bytes of anything, then the count
 constexpr size_t kTriangleSize = 50;  // normal, three corners, 16 bits of anything
-
-uint32_t ReadUint32(const uint8_t* p) {
-  return static_cast<uint32_t>(p[0]) | static_cast<uint32_t>(p[1]) << 8 | static_cast<uint32_t>(p[2]) << 16 |
-         static_cast<uint32_t>(p[3]) << 24;
-}
-
-float ReadFloat(const uint8_t* p) {
-  const uint32_t bits = ReadUint32(p);
-  float value;
-  std::memcpy(&value, &bits, sizeof(value));
-  return value;
-}
 
 // Corners at one place become one vertex as they come: as three vertices for each triangle they would take several times the memory.
 class Welder {
