@@ -7,6 +7,7 @@
 #include "document/draco_encode.h"
 #include "document/embed_images.h"
 #include "document/gltf_document.h"
+#include "document/references.h"
 #include "draco/within_memory.h"
 #include "extension/progressive.h"
 #include "lacerta/gltf.h"
@@ -262,6 +263,7 @@ StatusOr<PackResult> PackLargeShape(FileMesh mesh, const std::string& name, cons
 StatusOr<PackResult> PackGltf(Span<const uint8_t> asset, const PackOptions& options) {
   return WithinMemory([&]() -> StatusOr<PackResult> {
     LACERTA_ASSIGN_OR_RETURN(GltfDocument document, ParseGltf(asset, options.folder));
+    LACERTA_RETURN_IF_ERROR(CheckReferences(document.json));
     std::vector<std::string> notes;
     if (options.repair) {
       LACERTA_ASSIGN_OR_RETURN(notes, RepairDocument(&document));

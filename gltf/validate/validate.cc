@@ -7,6 +7,8 @@
 #include "document/gltf_document.h"
 #include "document/place.h"
 #include "document/primitive.h"
+#include "document/references.h"
+#include "document/scene.h"
 #include "extension/progressive.h"
 #include "lacerta/gltf.h"
 #include "lacerta/surface_distance.h"
@@ -22,7 +24,14 @@ class Validator {
   Validator(const GltfDocument& document, const ValidateOptions& options)
       : document_(document), options_(options), progressive_(ParseProgressive(document)) {}
 
-  void CheckReferences() {
+  void CheckStructure() {
+    const std::vector<std::string> dangling = DanglingReferences(document_.json);
+    for (const std::string& reference : dangling) Error("", reference);
+    if (!dangling.empty()) return;
+    if (const Status scene = CollectInstances(document_).status(); !scene.ok()) Error("", scene.message());
+  }
+
+  void CheckData() {
     for (uint64_t i = 0; i < ArraySize(document_.json, "bufferViews"); ++i) {
       if (progressive_.ok() && IsTransmitted(i)) continue;  // may be cut short
       const Status status = BufferViewBytes(document_, i).status();
@@ -204,7 +213,8 @@ ValidationReport ValidateGltf(Span<const uint8_t> asset, const ValidateOptions& 
     if (!original.ok()) return {{{true, "", "the original: " + original.status().message()}}, {}};
     validator.SetOriginal(&original.value());
   }
-  validator.CheckReferences();
+  validator.CheckStructure();
+  validator.CheckData();
   validator.CheckExtension();
   validator.CheckPrimitives();
   return validator.Take();

@@ -543,6 +543,17 @@ TEST(Pack, BadInputIsNamed) {
   EXPECT_EQ(PackGltf(builder.Glb(), custom).status().code(), StatusCode::kInvalidArgument);
 }
 
+// New bufferViews would else be taken for the one that is missing.
+TEST(Pack, WhatRefersToNothingIsRefused) {
+  AssetBuilder builder;
+  builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(13, 22))}));
+  Json& json = builder.document().json;
+  json["accessors"].push_back({{"bufferView", json["bufferViews"].size()}, {"componentType", 5126}, {"count", 3}, {"type", "SCALAR"}});
+  const Status status = PackGltf(builder.Glb(), Options(Fallback::kDraco)).status();
+  EXPECT_EQ(status.code(), StatusCode::kInvalidData);
+  EXPECT_THAT(status.message(), HasSubstr("/accessors/2/bufferView refers to /bufferViews/2, which does not exist"));
+}
+
 // One asset of every class: what is in it, and how its primitives end.
 struct AssetClass {
   const char* file;

@@ -52,6 +52,8 @@ TEST(Validate, FindsWhatIsWrong) {
   EXPECT_THAT(ErrorsWith([](Json* json) { (*json)["segments"]["stream"][1] = 0; }), HasSubstr("segments for"));
   EXPECT_THAT(ErrorsAfter([](GltfDocument* d) { d->json["extensionsUsed"] = Json::array(); }), HasSubstr("extensionsUsed"));
   EXPECT_THAT(ErrorsAfter([](GltfDocument* d) { d->json["accessors"][0]["bufferView"] = 77; }), HasSubstr("accessor 0"));
+  EXPECT_THAT(ErrorsAfter([](GltfDocument* d) { d->json["nodes"][0]["mesh"] = 55; }), HasSubstr("/nodes/0/mesh refers to /meshes/55"));
+  EXPECT_THAT(ErrorsAfter([](GltfDocument* d) { d->json["nodes"][0]["children"] = {0}; }), HasSubstr("its own ancestor"));
   // One bit of the last segment: only its checksum tells.
   EXPECT_THAT(ErrorsAfter([](GltfDocument* d) { d->buffers[0][d->buffers[0].size() - 8] ^= 1; }), HasSubstr("level"));
   EXPECT_FALSE(ValidateGltf(Bytes{1, 2, 3}, {}).IsValid());
