@@ -4,6 +4,8 @@
 #include <cstring>
 #include <limits>
 
+#include "document/alignment.h"
+
 namespace lacerta {
 namespace {
 
@@ -19,16 +21,21 @@ StatusOr<uint32_t> ParseComponents(const Json& object) {
   return Unsupported("type \"" + type + "\" is not read as a vertex attribute");
 }
 
-// Copies `count` elements of `size` bytes, `stride` apart, after checking that they are inside `source`.
-Status CopyElements(Span<const uint8_t> source, uint64_t offset, uint64_t stride, uint64_t size, uint64_t count,
-                    Bytes* target) {
+// Fails where `count` elements of `size` bytes, `stride` apart, are not all inside so many bytes.
+Status CheckElements(uint64_t num_bytes, uint64_t offset, uint64_t stride, uint64_t size, uint64_t count) {
   if (count == 0) return Status();
   if (stride < size) return InvalidData("byteStride " + std::to_string(stride) + " is smaller than an element");
-  if (offset > source.size() || size > source.size() - offset ||
-      (count - 1) > (source.size() - offset - size) / stride) {
-    return InvalidData(std::to_string(count) + " elements from byte " + std::to_string(offset) +
-                       " on are more than the bufferView of " + std::to_string(source.size()) + " bytes holds");
+  if (offset > num_bytes || size > num_bytes - offset || (count - 1) > (num_bytes - offset - size) / stride) {
+    return InvalidData(std::to_string(count) + " elements from byte " + std::to_string(offset) + " on are more than the bufferView of " +
+                       std::to_string(num_bytes) + " bytes holds");
   }
+  return Status();
+}
+
+// Copies elements, after checking that they are inside `source`.
+Status CopyElements(Span<const uint8_t> source, uint64_t offset, uint64_t stride, uint64_t size, uint64_t count,
+                    Bytes* target) {
+  LACERTA_RETURN_IF_ERROR(CheckElements(source.size(), offset, stride, size, count));
   target->resize(static_cast<size_t>(count * size));
   for (uint64_t i = 0; i < count; ++i) {
     std::memcpy(target->data() + i * size, source.data() + offset + i * stride, static_cast<size_t>(size));
@@ -130,6 +137,29 @@ StatusOr<AccessorData> ReadNamed(const GltfDocument& document, uint64_t index,
   return data;
 }
 
+// part: of an accessor, with "bufferView" and "byteOffset" of so many elements of so many bytes.
+Status CheckPart(const GltfDocument& document, const Json& part, uint64_t size, uint64_t count) {
+  const std::optional<uint64_t> view = AsIndex(Find(part, "bufferView"));
+  if (!view.has_value() || size == 0) return Status();
+  const StatusOr<Span<const uint8_t>> bytes = BufferViewBytes(document, *view);
+  if (!bytes.ok()) return bytes.status().code() == StatusCode::kUnsupported ? Status() : bytes.status();
+  LACERTA_ASSIGN_OR_RETURN(const uint64_t offset, GetIndex(part, "byteOffset", 0));
+  LACERTA_ASSIGN_OR_RETURN(const uint64_t stride, GetIndex(*FindElement(document.json, "bufferViews", *view), "byteStride", size));
+  return CheckElements(bytes.value().size(), offset, stride, size, count);
+}
+
+Status CheckParts(const GltfDocument& document, const Json& accessor) {
+  LACERTA_ASSIGN_OR_RETURN(const uint64_t count, GetIndex(accessor, "count"));
+  const uint64_t size = ElementSize(accessor);
+  LACERTA_RETURN_IF_ERROR(CheckPart(document, accessor, size, count));
+  const Json* sparse = Find(accessor, "sparse");
+  if (sparse == nullptr) return Status();
+  LACERTA_ASSIGN_OR_RETURN(const uint64_t sparse_count, GetIndex(*sparse, "count"));
+  if (const Json* indices = Find(*sparse, "indices"); indices != nullptr) LACERTA_RETURN_IF_ERROR(CheckPart(document, *indices, ComponentSizeOf(*indices), sparse_count));
+  if (const Json* values = Find(*sparse, "values"); values != nullptr) LACERTA_RETURN_IF_ERROR(CheckPart(document, *values, size, sparse_count));
+  return Status();
+}
+
 }  // namespace
 
 StatusOr<ComponentType> ParseComponentType(const Json& object) {
@@ -160,6 +190,22 @@ size_t ComponentSize(ComponentType type) {
       return 4;
   }
   return 4;
+}
+
+uint64_t ComponentSizeOf(const Json& object) {
+  const StatusOr<ComponentType> type = ParseComponentType(object);
+  return type.ok() ? ComponentSize(type.value()) : 0;
+}
+
+// glTF 2.0 section 3.6.2.4: the columns of matrices begin at multiples of four bytes.
+uint64_t ElementSize(const Json& accessor) {
+  const uint64_t component = ComponentSizeOf(accessor);
+  const std::string type = AsString(Find(accessor, "type"));
+  if (type == "SCALAR") return component;
+  const uint64_t order = type.size() == 4 && type[3] >= '2' && type[3] <= '4' ? static_cast<uint64_t>(type[3] - '0') : 0;
+  if (type.rfind("VEC", 0) == 0) return order * component;
+  if (type.rfind("MAT", 0) == 0) return order * Aligned(order * component);
+  return 0;
 }
 
 float AccessorData::Float(uint64_t element, uint32_t component) const {
@@ -252,6 +298,13 @@ StatusOr<AccessorData> ReadAccessorOrZeros(const GltfDocument& document, uint64_
 
 StatusOr<AccessorData> ReadMatrices(const GltfDocument& document, uint64_t index) {
   return ReadNamed(document, index, ReadUnnamedMatrices);
+}
+
+Status CheckAccessor(const GltfDocument& document, uint64_t index) {
+  const std::string name = "accessor " + std::to_string(index);
+  const Json* accessor = FindElement(document.json, "accessors", index);
+  if (accessor == nullptr) return InvalidData(name + " does not exist");
+  return CheckParts(document, *accessor).WithContext(name);
 }
 
 }  // namespace lacerta

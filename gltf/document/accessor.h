@@ -20,6 +20,9 @@ enum class ComponentType : uint32_t {
 };
 
 size_t ComponentSize(ComponentType type);  // bytes
+// Bytes of a component and of an element of an accessor or a sparse part, 0 where the JSON does not tell them.
+uint64_t ComponentSizeOf(const Json& object);
+uint64_t ElementSize(const Json& accessor);
 
 // "componentType" of an accessor or of its sparse indices. Fails with kInvalidData where there is no such type.
 StatusOr<ComponentType> ParseComponentType(const Json& object);
@@ -62,6 +65,10 @@ StatusOr<AccessorData> ReadAccessorOrZeros(const GltfDocument& document, uint64_
 
 // The same for 4 x 4 matrices of floats, column by column: 16 components. Anything else is refused with kUnsupported.
 StatusOr<AccessorData> ReadMatrices(const GltfDocument& document, uint64_t index);
+
+// Fails with kInvalidData where elements of accessors[index], of any type, or of its sparse part are outside of their bufferViews. Bytes that are not in
+// the document are not missed.
+Status CheckAccessor(const GltfDocument& document, uint64_t index);
 
 }  // namespace lacerta
 

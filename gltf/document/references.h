@@ -14,7 +14,7 @@ namespace lacerta {
 // section 5), and those of extensions for textures, materials, lights, instances and Draco. What is no index at all is left to whoever reads it.
 std::vector<std::string> DanglingReferences(const Json& json);
 
-// Fails with kInvalidData at the first of them. An asset that gets new elements needs this: they would be taken for what was missing.
+// Fails with kInvalidData at the first of them.
 Status CheckReferences(const Json& json);
 
 }  // namespace lacerta

@@ -5,28 +5,8 @@
 #include <optional>
 
 #include "document/accessor.h"
-#include "document/alignment.h"
 
 namespace lacerta {
-namespace {
-
-uint64_t SizeOfComponent(const Json& object) {
-  const StatusOr<ComponentType> type = ParseComponentType(object);
-  return type.ok() ? ComponentSize(type.value()) : 0;
-}
-
-// glTF 2.0 section 3.6.2.4: the columns of matrices begin at multiples of four bytes.
-uint64_t ElementSize(const Json& accessor) {
-  const uint64_t component = SizeOfComponent(accessor);
-  const std::string type = AsString(Find(accessor, "type"));
-  if (type == "SCALAR") return component;
-  const uint64_t order = type.size() == 4 && type[3] >= '2' && type[3] <= '4' ? static_cast<uint64_t>(type[3] - '0') : 0;
-  if (type.rfind("VEC", 0) == 0) return order * component;
-  if (type.rfind("MAT", 0) == 0) return order * Aligned(order * component);
-  return 0;
-}
-
-}  // namespace
 
 void VisitViewReferences(Json& json, const std::function<void(Json&)>& visit) {
   if (json.is_array()) {
@@ -82,7 +62,7 @@ void VisitAccessorParts(Json& json, const std::function<void(Json& part, uint64_
     Json* sparse = Find(accessor, "sparse");
     if (sparse == nullptr) continue;
     const uint64_t count = AsIndex(Find(*sparse, "count")).value_or(0);
-    if (Json* indices = Find(*sparse, "indices"); indices != nullptr) visit(*indices, SizeOfComponent(*indices), count);
+    if (Json* indices = Find(*sparse, "indices"); indices != nullptr) visit(*indices, ComponentSizeOf(*indices), count);
     if (Json* values = Find(*sparse, "values"); values != nullptr) visit(*values, size, count);
   }
 }

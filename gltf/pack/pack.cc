@@ -2,6 +2,7 @@
 #include <map>
 #include <utility>
 
+#include "document/accessor.h"
 #include "document/buffer_edit.h"
 #include "document/merge_buffers.h"
 #include "document/draco_encode.h"
@@ -209,6 +210,13 @@ Status CheckOptions(const PackOptions& options) {
   return Status();
 }
 
+// Whether all is there that a document refers to: what it lacks would come out as it came in, or be taken to be what is added.
+Status CheckComplete(const GltfDocument& document) {
+  LACERTA_RETURN_IF_ERROR(CheckReferences(document.json));
+  for (uint64_t i = 0; i < ArraySize(document.json, "accessors"); ++i) LACERTA_RETURN_IF_ERROR(CheckAccessor(document, i));
+  return Status();
+}
+
 // The document with the geometry that the plans have for it.
 StatusOr<PackResult> StorePlans(GltfDocument document, const std::vector<PrimitivePlan>& plans, const PackOptions& options) {
   std::set<uint64_t> unused_views = DracoViews(document);
@@ -263,7 +271,7 @@ StatusOr<PackResult> PackLargeShape(FileMesh mesh, const std::string& name, cons
 StatusOr<PackResult> PackGltf(Span<const uint8_t> asset, const PackOptions& options) {
   return WithinMemory([&]() -> StatusOr<PackResult> {
     LACERTA_ASSIGN_OR_RETURN(GltfDocument document, ParseGltf(asset, options.folder));
-    LACERTA_RETURN_IF_ERROR(CheckReferences(document.json));
+    LACERTA_RETURN_IF_ERROR(CheckComplete(document));
     std::vector<std::string> notes;
     if (options.repair) {
       LACERTA_ASSIGN_OR_RETURN(notes, RepairDocument(&document));

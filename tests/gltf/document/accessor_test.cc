@@ -112,5 +112,27 @@ TEST(Accessor, RefusesWhatIsNotThere) {
   EXPECT_THAT(ReadAccessor(Floats(6, Json::object()), 1).status().message(), HasSubstr("accessor 1 does not exist"));
 }
 
+TEST(Accessor, ElementsOfEveryTypeAreInsideTheirViews) {
+  const auto check = [](size_t count, const Json& accessor, const Json& view = Json::object()) { return CheckAccessor(Floats(count, accessor, view), 0); };
+  const auto sparse = [](uint64_t count, uint64_t offset) {
+    const Json indices = {{"bufferView", 0}, {"componentType", 5123}}, values = {{"bufferView", 0}, {"byteOffset", offset}};
+    return Json{{"sparse", {{"count", count}, {"indices", indices}, {"values", values}}}};
+  };
+  EXPECT_TRUE(check(6, Json::object()).ok());
+  EXPECT_THAT(check(5, Json::object()).message(), AllOf(HasSubstr("accessor 0"), HasSubstr("2 elements")));
+  EXPECT_TRUE(check(32, {{"type", "MAT4"}}).ok());
+  EXPECT_EQ(check(31, {{"type", "MAT4"}}).code(), StatusCode::kInvalidData);
+  EXPECT_TRUE(check(7, Json::object(), {{"byteStride", 16}}).ok());
+  EXPECT_EQ(check(6, Json::object(), {{"byteStride", 16}}).code(), StatusCode::kInvalidData);
+  EXPECT_TRUE(check(6, sparse(2, 0)).ok());
+  EXPECT_EQ(check(6, sparse(2, 4)).code(), StatusCode::kInvalidData);
+  EXPECT_EQ(check(6, sparse(13, 0)).code(), StatusCode::kInvalidData);
+  EXPECT_TRUE(check(6, {{"type", "of its own"}, {"count", 99}}).ok());  // nobody knows
+  GltfDocument without_data = Floats(6, Json::object());
+  without_data.json["accessors"][0].erase("bufferView");
+  EXPECT_TRUE(CheckAccessor(without_data, 0).ok());
+  EXPECT_EQ(CheckAccessor(without_data, 1).code(), StatusCode::kInvalidData);
+}
+
 }  // namespace
 }  // namespace lacerta

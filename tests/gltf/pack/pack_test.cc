@@ -552,6 +552,10 @@ TEST(Pack, WhatRefersToNothingIsRefused) {
   const Status status = PackGltf(builder.Glb(), Options(Fallback::kDraco)).status();
   EXPECT_EQ(status.code(), StatusCode::kInvalidData);
   EXPECT_THAT(status.message(), HasSubstr("/accessors/2/bufferView refers to /bufferViews/2, which does not exist"));
+  json["accessors"][2] = {{"bufferView", 0}, {"componentType", 5126}, {"count", 100000}, {"type", "MAT4"}};
+  const Status beyond = PackGltf(builder.Glb(), Options(Fallback::kDraco)).status();
+  EXPECT_EQ(beyond.code(), StatusCode::kInvalidData);
+  EXPECT_THAT(beyond.message(), AllOf(HasSubstr("accessor 2"), HasSubstr("100000 elements")));
 }
 
 // One asset of every class: what is in it, and how its primitives end.
