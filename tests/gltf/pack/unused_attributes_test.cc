@@ -139,6 +139,7 @@ Bytes BallWithTexCoords(bool is_textured, bool moves, int normal_map_set = -1) {
   }
   builder.AddMesh("ball", Json::array({primitive}));
   document.json["materials"][0].erase("extensions");  // any number in there may stand for an accessor, which then is kept
+  document.json["textures"] = Json::array({Json::object()});
   if (is_textured) document.json["materials"][0]["emissiveTexture"] = {{"index", 0}};
   if (normal_map_set >= 0) document.json["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", normal_map_set}};
   return builder.Glb();
