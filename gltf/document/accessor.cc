@@ -137,7 +137,7 @@ StatusOr<AccessorData> ReadNamed(const GltfDocument& document, uint64_t index,
   return data;
 }
 
-// part: of an accessor, with "bufferView" and "byteOffset" of so many elements of so many bytes.
+// part, size, count: as of VisitParts.
 Status CheckPart(const GltfDocument& document, const Json& part, uint64_t size, uint64_t count) {
   const std::optional<uint64_t> view = AsIndex(Find(part, "bufferView"));
   if (!view.has_value() || size == 0) return Status();
@@ -149,15 +149,13 @@ Status CheckPart(const GltfDocument& document, const Json& part, uint64_t size, 
 }
 
 Status CheckParts(const GltfDocument& document, const Json& accessor) {
-  LACERTA_ASSIGN_OR_RETURN(const uint64_t count, GetIndex(accessor, "count"));
-  const uint64_t size = ElementSize(accessor);
-  LACERTA_RETURN_IF_ERROR(CheckPart(document, accessor, size, count));
-  const Json* sparse = Find(accessor, "sparse");
-  if (sparse == nullptr) return Status();
-  LACERTA_ASSIGN_OR_RETURN(const uint64_t sparse_count, GetIndex(*sparse, "count"));
-  if (const Json* indices = Find(*sparse, "indices"); indices != nullptr) LACERTA_RETURN_IF_ERROR(CheckPart(document, *indices, ComponentSizeOf(*indices), sparse_count));
-  if (const Json* values = Find(*sparse, "values"); values != nullptr) LACERTA_RETURN_IF_ERROR(CheckPart(document, *values, size, sparse_count));
-  return Status();
+  LACERTA_RETURN_IF_ERROR(GetIndex(accessor, "count").status());
+  if (const Json* sparse = Find(accessor, "sparse"); sparse != nullptr) LACERTA_RETURN_IF_ERROR(GetIndex(*sparse, "count").status());
+  Status status;
+  VisitParts(accessor, [&](const Json& part, uint64_t size, uint64_t count) {
+    if (status.ok()) status = CheckPart(document, part, size, count);
+  });
+  return status;
 }
 
 }  // namespace

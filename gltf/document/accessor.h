@@ -24,6 +24,19 @@ size_t ComponentSize(ComponentType type);  // bytes
 uint64_t ComponentSizeOf(const Json& object);
 uint64_t ElementSize(const Json& accessor);
 
+// Calls visit(part, size, count) on all that an accessor consists of, itself and the indices and values of its sparse part: `part` holds "bufferView" and
+// "byteOffset" of so many elements of so many bytes. Sizes and counts are 0 where the JSON does not tell them. AnyJson: const Json or Json.
+template <typename AnyJson, typename Visit>
+void VisitParts(AnyJson& accessor, const Visit& visit) {
+  const auto count_of = [](const Json& object) { return AsIndex(Find(object, "count")).value_or(0); };
+  const uint64_t size = ElementSize(accessor);
+  if (Find(accessor, "bufferView") != nullptr) visit(accessor, size, count_of(accessor));
+  AnyJson* const sparse = Find(accessor, "sparse");
+  if (sparse == nullptr) return;
+  if (AnyJson* const indices = Find(*sparse, "indices"); indices != nullptr) visit(*indices, ComponentSizeOf(*indices), count_of(*sparse));
+  if (AnyJson* const values = Find(*sparse, "values"); values != nullptr) visit(*values, size, count_of(*sparse));
+}
+
 // "componentType" of an accessor or of its sparse indices. Fails with kInvalidData where there is no such type.
 StatusOr<ComponentType> ParseComponentType(const Json& object);
 

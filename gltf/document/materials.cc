@@ -29,14 +29,12 @@ std::vector<const Json*> MaterialsOf(const GltfDocument& document, const std::ve
   return materials;
 }
 
-void VisitTextures(const Json& material, const std::function<void(const std::string& role, const Json& texture)>& visit) {
+void VisitTextures(const Json& material, const std::string& pointer, const std::function<void(const std::string& pointer, const Json& texture)>& visit) {
   if (!material.is_structured()) return;
   for (const auto& [key, value] : material.items()) {
-    if (value.is_object() && Find(value, "index") != nullptr) {
-      visit(key, value);
-    } else {
-      VisitTextures(value, visit);
-    }
+    const std::string at = pointer + "/" + key;
+    if (value.is_object() && Find(value, "index") != nullptr) visit(at, value);
+    VisitTextures(value, at, visit);
   }
 }
 

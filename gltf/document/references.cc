@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "document/materials.h"
+
 namespace lacerta {
 namespace {
 
@@ -65,17 +67,11 @@ void VisitPath(const Json& json, std::string_view path, const std::string& point
   }
 }
 
-// Calls visit on the indices of textures in materials: those of what is called a texture there, by extensions, too.
-void VisitTextures(const Json& json, const std::string& pointer, const Visit& visit) {
+// Whether a textureInfo of a material, by its JSON pointer, is one: anything may stand in extras, and have an "index" in extensions.
+bool IsTexture(const std::string& pointer) {
   constexpr std::string_view kEnding = "Texture";
-  if (!json.is_structured()) return;
-  for (const auto& [name, value] : json.items()) {
-    if (name == "extras") continue;
-    const std::string at = pointer + "/" + name;
-    const bool is_texture = name.size() > kEnding.size() && name.compare(name.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
-    if (const Json* index = is_texture ? Find(value, "index") : nullptr; index != nullptr) visit(at + "/index", *index);
-    VisitTextures(value, at, visit);
-  }
+  return pointer.find("/extras/") == std::string::npos && pointer.size() > kEnding.size() &&
+         pointer.compare(pointer.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
 }
 
 uint64_t SizeAt(const Json& json, std::string_view path) {
@@ -97,9 +93,14 @@ std::vector<std::string> DanglingReferences(const Json& json) {
   for (const Reference& reference : kReferences) {
     VisitPath(json, reference.path, "", check_into(std::string(reference.array), SizeAt(json, reference.array)));
   }
-  if (const Json* materials = Find(json, "materials"); materials != nullptr) VisitTextures(*materials, "/materials", check_into("/textures", SizeAt(json, "/textures")));
+  const Visit check_texture = check_into("/textures", ArraySize(json, "textures"));
+  VisitPath(json, "/materials/*", "", [&](const std::string& pointer, const Json& material) {
+    VisitTextures(material, pointer, [&](const std::string& at, const Json& texture) {
+      if (IsTexture(at)) check_texture(at + "/index", *Find(texture, "index"));
+    });
+  });
   VisitPath(json, "/animations/*", "", [&](const std::string& pointer, const Json& animation) {
-    VisitPath(animation, "/channels/*/sampler", pointer, check_into(pointer + "/samplers", SizeAt(animation, "/samplers")));
+    VisitPath(animation, "/channels/*/sampler", pointer, check_into(pointer + "/samplers", ArraySize(animation, "samplers")));
   });
   return dangling;
 }

@@ -56,15 +56,7 @@ std::set<uint64_t> ViewsOfAccessor(const GltfDocument& document, uint64_t index)
 void VisitAccessorParts(Json& json, const std::function<void(Json& part, uint64_t size, uint64_t count)>& visit) {
   Json* accessors = Find(json, "accessors");
   if (accessors == nullptr || !accessors->is_array()) return;
-  for (Json& accessor : *accessors) {
-    const uint64_t size = ElementSize(accessor);
-    if (Find(accessor, "bufferView") != nullptr) visit(accessor, size, AsIndex(Find(accessor, "count")).value_or(0));
-    Json* sparse = Find(accessor, "sparse");
-    if (sparse == nullptr) continue;
-    const uint64_t count = AsIndex(Find(*sparse, "count")).value_or(0);
-    if (Json* indices = Find(*sparse, "indices"); indices != nullptr) visit(*indices, ComponentSizeOf(*indices), count);
-    if (Json* values = Find(*sparse, "values"); values != nullptr) visit(*values, size, count);
-  }
+  for (Json& accessor : *accessors) VisitParts(accessor, visit);
 }
 
 }  // namespace lacerta

@@ -25,9 +25,7 @@ bool AreViewReferencesKnown(const GltfDocument& document);
 // The bufferViews that accessor `index` refers to, itself or through its sparse part.
 std::set<uint64_t> ViewsOfAccessor(const GltfDocument& document, uint64_t index);
 
-// Calls visit(part, size, count) on all that accessors consist of, themselves and the indices and values of their sparse
-// parts: `part` holds "bufferView" and "byteOffset" of so many elements of so many bytes. The size is 0 where the JSON does
-// not tell it.
+// VisitParts of all accessors.
 void VisitAccessorParts(Json& json, const std::function<void(Json& part, uint64_t size, uint64_t count)>& visit);
 
 }  // namespace lacerta

@@ -12,7 +12,7 @@ namespace {
 // The largest scale of `set` in any textureInfo of a material.
 double LargestScale(const Json& material, uint64_t set) {
   double largest = 1.0;
-  VisitTextures(material, [&](const std::string&, const Json& texture) {
+  VisitTextures(material, "", [&](const std::string&, const Json& texture) {
     const Json* transform = FindExtension(texture, "KHR_texture_transform");
     if (transform == nullptr || TexCoordOf(texture) != set) return;
     for (uint64_t axis = 0; axis < 2; ++axis) {

@@ -21,13 +21,14 @@ std::optional<uint64_t> SetOf(const std::string& name, const std::string& prefix
 bool IsTextured(const GltfDocument& document, const std::vector<Place>& places, uint64_t set) {
   bool is_textured = set == 0 && UsesExtension(document.json, "VRM");  // names textures outside of materials
   for (const Json* material : MaterialsOf(document, places)) {
-    VisitTextures(*material, [&](const std::string&, const Json& texture) { is_textured = is_textured || TexCoordOf(texture) == set; });
+    VisitTextures(*material, "", [&](const std::string&, const Json& texture) { is_textured = is_textured || TexCoordOf(texture) == set; });
   }
   return is_textured;
 }
 
 // normalTexture, or one of an extension's own, such as clearcoatNormalTexture.
-bool IsNormalMap(const std::string& role) { return role.find("ormalTexture") != std::string::npos; }
+// pointer: of a texture in a material.
+bool IsNormalMap(const std::string& pointer) { return pointer.find("ormalTexture", pointer.rfind('/')) != std::string::npos; }
 
 bool IsAnisotropic(const Json& material) { return FindExtension(material, "KHR_materials_anisotropy") != nullptr; }
 
@@ -35,7 +36,7 @@ bool HasTangentSpace(const GltfDocument& document, const std::vector<Place>& pla
   bool has_one = false;
   for (const Json* material : MaterialsOf(document, places)) {
     has_one = has_one || IsAnisotropic(*material);
-    VisitTextures(*material, [&](const std::string& role, const Json&) { has_one = has_one || IsNormalMap(role); });
+    VisitTextures(*material, "", [&](const std::string& pointer, const Json&) { has_one = has_one || IsNormalMap(pointer); });
   }
   return has_one;
 }
@@ -80,8 +81,8 @@ bool AreTangentsDerivable(const GltfDocument& document, const std::vector<Place>
   bool are_derivable = true;
   for (const Json* material : MaterialsOf(document, places)) {
     are_derivable = are_derivable && !IsAnisotropic(*material);
-    VisitTextures(*material, [&](const std::string& role, const Json& texture) {
-      if (IsNormalMap(role)) are_derivable = are_derivable && Find(*attributes, ("TEXCOORD_" + std::to_string(TexCoordOf(texture))).c_str()) != nullptr;
+    VisitTextures(*material, "", [&](const std::string& pointer, const Json& texture) {
+      if (IsNormalMap(pointer)) are_derivable = are_derivable && Find(*attributes, ("TEXCOORD_" + std::to_string(TexCoordOf(texture))).c_str()) != nullptr;
     });
   }
   return are_derivable;
