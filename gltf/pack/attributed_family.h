@@ -3,7 +3,6 @@
 #define LACERTA_PACK_ATTRIBUTED_FAMILY_H_
 
 #include <cstdint>
-#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,12 +13,10 @@
 #include "lacerta/gltf.h"
 #include "lacerta/status.h"
 #include "pack/skin.h"
+#include "pack/texel_scale.h"
 #include "remesh/simplify_to_errors.h"
 
 namespace lacerta {
-
-// Texels per unit of a member's texture coordinates.
-using TexelScale = std::function<double(size_t member, uint64_t set)>;
 
 // The name of an attribute in the surface: texture coordinates of unlike scales are attributes of their own, each with
 // its own target.

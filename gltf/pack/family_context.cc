@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "pack/find_skin.h"
-#include "pack/texel_scale.h"
 
 namespace lacerta {
 namespace {
@@ -69,10 +68,9 @@ StatusOr<std::optional<Skin>> FamilyContext::FindSkin() const {
 }
 
 TexelScale FamilyContext::Scale() const {
-  return [scene = scene, family = family](size_t member, uint64_t set) {
-    const Source& source = scene->sources[scene->families.families[family].members[member]];
-    return TexelsPerUnit(*scene->document, source.places, set, scene->texel_side);
-  };
+  std::vector<PlacedPrimitive> placed;
+  for (const Source* source : Sources()) placed.push_back({&source->places, &*source->primitive});
+  return TexelScaleOf(*scene->document, placed, scene->texel_side);
 }
 
 uint64_t FamilyContext::BytesBefore() const {

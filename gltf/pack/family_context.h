@@ -34,7 +34,7 @@ struct FamilyContext {
   std::vector<TargetMix> Mixes() const;  // that the asset shows
   bool MayRoundTargets() const { return options->fallback == Fallback::kDraco && !options->float_targets; }
   StatusOr<std::optional<Skin>> FindSkin() const;  // what moves the family; empty where nothing does
-  TexelScale Scale() const;  // refers to the scene
+  TexelScale Scale() const;
   uint64_t BytesBefore() const;    // of all members' data, as often as the asset holds it
   uint64_t DracoJsonBytes() const;  // about what JSON KHR_draco_mesh_compression takes at all places that show the family
   uint64_t ProgressiveJsonBytes() const;  // the same of LACERTA_mesh_progressive beside it

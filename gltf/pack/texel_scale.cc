@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "document/image_size.h"
 #include "document/materials.h"
+#include "pack/unused_attributes.h"
 
 namespace lacerta {
 namespace {
@@ -22,6 +27,42 @@ double LargestScale(const Json& material, uint64_t set) {
   return largest;
 }
 
+// How often a texture is repeated along a unit of `set`, at the most.
+double RepeatsPerUnit(const GltfDocument& document, const std::vector<Place>& places, uint64_t set) {
+  constexpr double kMostRepeats = 1e4;  // an absurd transform shall not ask for absurd bits
+  double scale = 1.0;
+  for (const Json* material : MaterialsOf(document, places)) scale = std::max(scale, LargestScale(*material, set));
+  return std::min(scale, kMostRepeats);
+}
+
+// Of values of one set in all members.
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+
+  void Add(const AccessorData& data, uint32_t component) {
+    for (uint64_t v = 0; v < data.count; ++v) {
+      const double value = data.Float(v, component);
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+};
+
+// The same of a set that no texture is laid by.
+double RepeatsPerUnitUnseen(const std::vector<PlacedPrimitive>& members, const std::string& name) {
+  constexpr double kMostRepeats = 4.0, kLeastPerUnit = 1e-6;
+  double extent = 0.0;
+  for (uint32_t axis = 0; axis < 2; ++axis) {
+    Range range;
+    for (const PlacedPrimitive& member : members) {
+      const Attribute* attribute = member.primitive->Find(name);
+      if (attribute != nullptr && attribute->data.components == 2) range.Add(attribute->data, axis);
+    }
+    extent = std::max(extent, range.high - range.low);
+  }
+  return extent > kMostRepeats ? std::max(kMostRepeats / extent, kLeastPerUnit) : 1.0;
+}
+
 }  // namespace
 
 uint64_t TexelSide(const GltfDocument& document) {
@@ -29,11 +70,19 @@ uint64_t TexelSide(const GltfDocument& document) {
   return std::max(LargestImageSide(document), kLeastSide);
 }
 
-double TexelsPerUnit(const GltfDocument& document, const std::vector<Place>& places, uint64_t set, uint64_t side) {
-  constexpr double kMostRepeats = 1e4;  // an absurd transform shall not ask for absurd bits
-  double scale = 1.0;
-  for (const Json* material : MaterialsOf(document, places)) scale = std::max(scale, LargestScale(*material, set));
-  return std::min(scale, kMostRepeats) * static_cast<double>(side);
+TexelScale TexelScaleOf(const GltfDocument& document, const std::vector<PlacedPrimitive>& members, uint64_t side) {
+  constexpr uint64_t kSets = 8;
+  std::map<std::pair<size_t, uint64_t>, double> repeats;
+  for (uint64_t set = 0; set < kSets; ++set) {
+    const std::string name = "TEXCOORD_" + std::to_string(set);
+    const bool is_seen = std::any_of(members.begin(), members.end(), [&](const PlacedPrimitive& member) { return !IsUnused(document, *member.places, name); });
+    const double unseen = is_seen ? 1.0 : RepeatsPerUnitUnseen(members, name);
+    for (size_t m = 0; m < members.size(); ++m) repeats[{m, set}] = is_seen ? RepeatsPerUnit(document, *members[m].places, set) : unseen;
+  }
+  return [repeats = std::move(repeats), side = static_cast<double>(side)](size_t member, uint64_t set) {
+    const auto found = repeats.find({member, set});
+    return found == repeats.end() ? side : found->second * side;
+  };
 }
 
 }  // namespace lacerta

@@ -119,14 +119,9 @@ StatusOr<std::vector<Judge>> MakeJudges(const Asset& original, double psnr) {
   std::vector<Judge> judges;
   for (size_t f = 0; f < families.families.size(); ++f) {
     const std::vector<size_t>& members = families.families[f].members;
-    std::map<std::pair<size_t, uint64_t>, double> scales;
-    for (size_t m = 0; m < members.size(); ++m) {
-      for (uint64_t set = 0; set < 8; ++set) scales[{m, set}] = TexelsPerUnit(original.document, places[members[m]], set, side);
-    }
-    const TexelScale texels = [scales, side](size_t member, uint64_t set) {
-      const auto found = scales.find({member, set});
-      return found == scales.end() ? static_cast<double>(side) : found->second;
-    };
+    std::vector<PlacedPrimitive> placed;
+    for (const size_t member : members) placed.push_back({&places[member], &original.primitives[member]});
+    const TexelScale texels = TexelScaleOf(original.document, placed, side);
     LACERTA_ASSIGN_OR_RETURN(AttributedMesh mesh, Join(original.primitives, members, texels));
     StatusOr<SurfaceErrorMeter> meter = SurfaceErrorMeter::Create(mesh, static_cast<double>(side));
     if (!meter.ok()) continue;  // nothing to see

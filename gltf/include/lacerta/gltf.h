@@ -28,7 +28,7 @@ enum class Fallback {
 // surface; of simplified surfaces over the 99 % of it where the error is least.
 struct AttributeTargets {
   // Texels of the largest texture of the asset, at least 1024. One texel is the distance over which bilinear filtering
-  // blurs anyway.
+  // blurs anyway. Of coordinates that no texture is laid by: of such a texture four times over their range, where that is above 4.
   double uv_texels = 1.0;
   // Of normals and tangents. Two degrees are below what a mesh at 70 dB shows of its own shape.
   double normal_degrees = 2.0;
