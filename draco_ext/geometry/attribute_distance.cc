@@ -43,11 +43,11 @@ struct SampledErrors {
 // Whether a thin sheet that `sample` is on one side of has lost its thickness in `nearness`, what is near on the other surface.
 bool IsSwapped(const GroupSurface& from, uint32_t face, const Vec3f& sample, double beyond, double diagonal, const GroupSurface::Nearness& nearness) {
   constexpr double kThinnest = 1e-5, kLeft = 0.1;  // of the diagonal; of the thickness
-  if (!nearness.height_of_away || *nearness.height_of_away < -kLeft * beyond) return false;
+  if (!nearness.height_of_back || *nearness.height_of_back < -kLeft * beyond) return false;
   uint32_t hint = face;
   std::vector<GroupSurface::Point> near;
-  const std::optional<double> own = from.PointsNear(from.mesh().GroupOf(face), sample, from.NormalOf(face), beyond, &hint, &near).height_of_away;
-  return own && *own < -kThinnest * diagonal && *nearness.height_of_away > kLeft * *own;
+  const std::optional<double> own = from.PointsNear(from.mesh().GroupOf(face), sample, from.NormalOf(face), beyond, &hint, &near).height_of_back;
+  return own && *own < -kThinnest * diagonal && *nearness.height_of_back > kLeft * *own;
 }
 
 SampledErrors ErrorsAtSamples(const GroupSurface& from, const GroupSurface& to, double diagonal, const AttributeDistanceOptions& options) {

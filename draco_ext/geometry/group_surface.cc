@@ -109,11 +109,13 @@ GroupSurface::Nearness GroupSurface::PointsNear(uint32_t group, const Vec3f& p, 
   for (const ClosestPointResult& result : near) {
     if (result.point.face != closest.point.face) add(result);
   }
-  const auto first_other = std::stable_partition(points->begin(), points->end(),
-                                                 [&](const Point& point) { return Dot(NormalOf(point.face), normal) > 0; });
+  constexpr double kLooksBack = -0.5;  // cosine: faces upright on the normal look away by chance, and begin at its own edges
+  const auto along = [&](const Point& point) { return Dot(NormalOf(point.face), normal); };
+  const auto first_other = std::stable_partition(points->begin(), points->end(), [&](const Point& point) { return along(point) > 0; });
   Nearness nearness{first_other != points->begin(), closest.squared_distance, {}};
   if (!nearness.agrees) return nearness;
-  if (first_other != points->end()) nearness.height_of_away = Dot(Vec3Cast<double>(first_other->position) - Vec3Cast<double>(points->front().position), normal);
+  const auto back = std::find_if(first_other, points->end(), [&](const Point& point) { return along(point) < kLooksBack; });
+  if (back != points->end()) nearness.height_of_back = Dot(Vec3Cast<double>(back->position) - Vec3Cast<double>(points->front().position), normal);
   points->erase(first_other, points->end());
   return nearness;
 }

@@ -34,8 +34,9 @@ class GroupSurface {
   struct Nearness {
     bool agrees = false;         // a face near looks the way that was asked for
     float squared_distance = 0;  // of the closest point, whichever way its face looks; 0 where there is none
-    // Along the normal, of the nearest face that looks away above the nearest that looks the way asked for. Nothing where one is missing.
-    std::optional<double> height_of_away;
+    // Along the normal, of the nearest face that looks back (more than 120 degrees off) above the nearest that looks the way asked for. Nothing where
+    // one is missing.
+    std::optional<double> height_of_back;
   };
 
   // The points of the group's faces that are closest to p: one per face, of the faces up to `beyond` farther than the closest one, and

@@ -202,6 +202,19 @@ TEST(AttributeDistanceTest, ASheetWhoseBackCameBeforeItsFrontIsCounted) {
   EXPECT_EQ(Distance(shapes::ThickSheet(1e-5f), shapes::ThickSheet(-1e-5f)).forward_swapped, 0);
 }
 
+TEST(AttributeDistanceTest, SidesThatAreUprightByAHairAreNoBack) {
+  // A stick of 2000 times its thickness: its sides lean out by 1e-4 of their height at one end, in at the other.
+  const auto stick = [](float lean) {
+    VertexSoup soup = shapes::TexturedBox(4);
+    for (Vec3f& p : soup.positions) p = {p.x, 5e-4f * (p.y - 0.5f) * (1 + lean * p.z), 5e-4f * p.z};
+    return Weld({soup});
+  };
+  AttributeDistanceOptions options;
+  options.num_samples = 10'000;
+  EXPECT_EQ(Distance(stick(-1e-4f), stick(1e-4f), options).forward_swapped, 0);
+  EXPECT_EQ(Distance(stick(1e-4f), stick(-1e-4f), options).forward_swapped, 0);
+}
+
 TEST(AttributeDistanceTest, GroupsAreComparedWithThemselves) {
   // The same square twice, as two groups of different colors: of every group only its own may count, and only part has the texture.
   VertexSoup red = shapes::TexturedGrid(2, 2), blue = red;
