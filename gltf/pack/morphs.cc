@@ -104,14 +104,17 @@ StatusOr<MorphMeter> MorphMeter::Create(const std::vector<MorphedPrimitive>& ori
   return meter;
 }
 
-StatusOr<double> MorphMeter::Worst(const std::vector<MorphedPrimitive>& stored) const {
-  constexpr uint64_t kSamples = 30'000;
-  double worst = 0.0;
+StatusOr<bool> MorphMeter::AreWithin(double error, const std::vector<MorphedPrimitive>& stored) const {
+  constexpr uint64_t kFewSamples = 3'000, kSamples = 30'000;
+  constexpr double kClear = 0.85;  // of the error: more samples would not find it above
   for (size_t m = 0; m < mixes_.size(); ++m) {
-    LACERTA_ASSIGN_OR_RETURN(const double distance, Distance(m, Morphed(stored, mixes_[m]), kSamples));
-    worst = std::max(worst, distance);
+    const TriangleMesh morphed = Morphed(stored, mixes_[m]);
+    LACERTA_ASSIGN_OR_RETURN(const double rough, Distance(m, morphed, kFewSamples));
+    if (rough <= kClear * error) continue;
+    LACERTA_ASSIGN_OR_RETURN(const double distance, Distance(m, morphed, kSamples));
+    if (!(distance <= error)) return false;
   }
-  return worst;
+  return true;
 }
 
 StatusOr<double> MorphMeter::Distance(size_t mix, const TriangleMesh& morphed, uint64_t num_samples) const {

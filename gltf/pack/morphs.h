@@ -41,8 +41,8 @@ class MorphMeter {
   // What is looked at: first one target after the other, as many as there are.
   const std::vector<TargetMix>& mixes() const { return mixes_; }
 
-  // d_S between the surfaces in the mix where that is largest, mesh units.
-  StatusOr<double> Worst(const std::vector<MorphedPrimitive>& stored) const;
+  // Whether d_S between the surfaces is `error` at most in every mix, mesh units.
+  StatusOr<bool> AreWithin(double error, const std::vector<MorphedPrimitive>& stored) const;
 
   // The same of a surface that is morphed already, by one of `mixes`.
   StatusOr<double> Distance(size_t mix, const TriangleMesh& morphed, uint64_t num_samples) const;

@@ -83,8 +83,8 @@ StatusOr<MorphedFamily> SimplifyMorphedFamily(const FamilyMeter& meter,
       if (!order_targets(rounded)) return false;
       std::vector<MorphedPrimitive> stored;
       for (size_t m = 0; m < targets.size(); ++m) stored.push_back({&rounded.members[m].decoded, &result.targets[m]});
-      const StatusOr<double> worst = morph_meter.Worst(stored);
-      return worst.ok() && worst.value() <= meter.error();
+      const StatusOr<bool> are_within = morph_meter.AreWithin(meter.error(), stored);
+      return are_within.ok() && are_within.value();
     };
     const SurfaceErrors errors = ErrorsOf(meter, morphed, std::move(simplified.errors));
     StatusOr<RoundedFamily> rounded = RoundFamily(PointersTo(simplified.primitives), meter, &errors, everywhere, takes_targets);

@@ -62,6 +62,7 @@ inline Bytes BallWithHills(const HillOptions& options = {}) {
     }
     const auto pick = [&](const std::vector<Vec3f>& all) {
       std::vector<Vec3f> own;
+      own.reserve(vertices.size());
       for (const uint32_t v : vertices) own.push_back(all[v]);
       return own;
     };
@@ -98,7 +99,7 @@ inline TriangleMesh MixedSurface(const Bytes& plain, size_t primitive_index, con
     if (weights[t] == 0) continue;
     const AccessorData offsets = ReadAccessor(document, json["targets"][t]["POSITION"].get<uint64_t>()).value();
     for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
-      mesh.positions[v] += Vec3f{offsets.Float(v, 0), offsets.Float(v, 1), offsets.Float(v, 2)} * weights[t];
+      mesh.positions[v] += VectorAt(offsets, v) * weights[t];
     }
   }
   return mesh;

@@ -10,6 +10,7 @@
 #include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
 #include "lacerta/surface_distance.h"
+#include "shapes/shapes.h"
 
 namespace lacerta {
 namespace {
@@ -166,6 +167,35 @@ TEST(Morphs, GoIntoAPrimitiveAndOutAgain) {
   EXPECT_EQ(back[1][0].data.Float(2, 1), 0.0f);
   EXPECT_EQ(back[1][0].data.Float(1, 0), 1.0f);
   EXPECT_EQ(WithTargets(primitive, {{{"COLOR_0", offsets}}}).status().code(), StatusCode::kUnsupported);
+}
+
+// Every target is looked at, and every mix of them, whether few samples tell or many have to.
+TEST(Morphs, AreWithinAnErrorWhereAllTheyShowIs) {
+  const TriangleMesh ball = shapes::Icosphere(4);
+  const Primitive primitive{ball.positions.size(), ball.triangles, {{"POSITION", MakeFloatAccessor(ball.positions)}}};
+  const auto grown = [&](float first, float second) {
+    std::vector<MorphTarget> targets;
+    for (const float by : {first, second}) {
+      std::vector<Vec3f> offsets = ball.positions;
+      for (Vec3f& offset : offsets) offset = offset * by;
+      targets.push_back({{"POSITION", MakeFloatAccessor(offsets)}});
+    }
+    return targets;
+  };
+  const std::vector<MorphTarget> original = grown(0.1f, 0.2f);
+  const auto are_within = [&](double error, const std::vector<MorphTarget>& stored, const std::vector<TargetMix>& mixes = {}) {
+    return MorphMeter::Create({{&primitive, &original}}, mixes).value().AreWithin(error, {{&primitive, &stored}}).value();
+  };
+  EXPECT_TRUE(are_within(1e-6, original));
+  for (const auto& stored : {grown(0.13f, 0.2f), grown(0.1f, 0.17f), grown(0.13f, 0.19f)}) {
+    EXPECT_TRUE(are_within(0.3, stored));
+    EXPECT_TRUE(are_within(0.0305, stored));
+    EXPECT_FALSE(are_within(0.0295, stored));
+    EXPECT_FALSE(are_within(0.003, stored));
+  }
+  EXPECT_TRUE(are_within(0.0305, grown(0.12f, 0.22f)));
+  EXPECT_FALSE(are_within(0.0305, grown(0.12f, 0.22f), {{1.0f, 1.0f}}));
+  EXPECT_TRUE(are_within(0.0405, grown(0.12f, 0.22f), {{1.0f, 1.0f}}));
 }
 
 TEST(Morphs, MorphStressTestHoldsItsError) {
