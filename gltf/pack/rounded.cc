@@ -112,7 +112,7 @@ class FamilyRounder {
     constexpr double kHopeless = 1.5;  // of the bytes, whatever a measure would correct
     constexpr double kUnlikely = 1.1;  // of the bytes, for what follows takes a tenth off, or little more
     constexpr double kWorthwhile = 0.01;  // of the bytes, for another measure
-    if (const uint64_t fewest = FewestBytes(most_bytes); static_cast<double>(fewest) > kHopeless * static_cast<double>(most_bytes)) return TooLarge(fewest);
+    if (const uint64_t fewest = FewestBytes(most_bytes); fewest > most_bytes) return TooLarge(fewest);
     Trial* best = nullptr;
     for (int round = 0; round < kMostRounds; ++round) {
       LACERTA_ASSIGN_OR_RETURN(Trial* trial, Smallest(most_bytes));
@@ -164,14 +164,29 @@ class FamilyRounder {
   // own target.
   double PoseRoom() const { return poses_.has_value() ? (1.0 - Square(own_poses_)) / correction_.poses : kInfinity; }
 
-  // No more than any precision that meets the targets takes: the bytes of positions alone, far too coarse. 0 where that is not known, or any number will do.
+  // No more than any precision that meets the targets takes: the bytes of what has a target, far too coarse. 0 where that is not known, or any number will do.
   uint64_t FewestBytes(uint64_t most_bytes) const {
     constexpr int kTooCoarse = 2 * kLevelsPerBit;
     if (most_bytes == std::numeric_limits<uint64_t>::max()) return 0;
-    const DracoPrecision precision{forecast_.LatticeAt(std::max(1, forecast_.StartLevel(meter_.error()) - kTooCoarse)), {}, 0};
+    const Lattice positions = forecast_.LatticeAt(std::max(1, forecast_.StartLevel(meter_.error()) - kTooCoarse));
     const auto bytes_of = [&](size_t m) {
       const TriangleMesh surface = Surface(*primitives_[m]);
-      return DracoPrimitiveBytes({surface.positions.size(), surface.triangles, {{"POSITION", MakeFloatAccessor(surface.positions)}}}, precision, {});
+      Primitive coarse{surface.positions.size(), surface.triangles, {{"POSITION", MakeFloatAccessor(surface.positions)}}};
+      DracoPrecision precision{positions, {}, 0};
+      for (const RoundedAttribute& attribute : attributes_) {
+        const int level = attribute.AtOrAbove(attribute.StartLevel() - kTooCoarse);
+        for (const RoundedAttribute::Part& part : attribute.parts) {
+          if (part.member != m) continue;
+          const Attribute& own = primitives_[m]->attributes[part.index];
+          coarse.attributes.push_back(own);
+          if (attribute.octahedral) {
+            precision.normal_bits = level / kLevelsPerBit;
+          } else {
+            precision.lattices[own.name] = attribute.LatticeAt(part, level);
+          }
+        }
+      }
+      return DracoPrimitiveBytes(coarse, precision, {});
     };
     const StatusOr<std::vector<uint64_t>> sizes = OfEachMember<uint64_t>(bytes_of);
     return sizes.ok() ? std::accumulate(sizes.value().begin(), sizes.value().end(), uint64_t{0}) : 0;

@@ -57,6 +57,14 @@ int RoundedAttribute::FirstLevel() const {
   return kLevelsPerBit * (octahedral ? kLeastOctahedralBits : 1);
 }
 
+int RoundedAttribute::StartLevel() const {
+  constexpr double kHalfTurn = 180.0, kDegrees = kHalfTurn / 3.14159265358979323846;
+  const double extent = octahedral ? kHalfTurn : range * (direction ? kDegrees : scale);
+  const double steps = extent / (target * std::sqrt(12.0));
+  if (!(steps > 1.0)) return FirstLevel();
+  return std::isfinite(steps) ? std::clamp(static_cast<int>(kLevelsPerBit * std::log2(steps)), FirstLevel(), kMostLevel) : kMostLevel;
+}
+
 int RoundedAttribute::AtOrAbove(int level) const {
   const int least = std::max(level, FirstLevel());
   return octahedral ? kLevelsPerBit * BitsAtOrAbove(least) : least;

@@ -37,6 +37,7 @@ struct RoundedAttribute {
   double num_numbers = 0.0; // elements times components as coded, of all parts
 
   int FirstLevel() const;
+  int StartLevel() const;  // at which the step moves values by about the target
   int AtOrAbove(int level) const;  // octahedral coding comes in whole bits
   Lattice LatticeAt(const Part& part, int level) const;  // of what is not octahedral
   AccessorData RoundedAt(const AccessorData& values, const Part& part, int level) const;  // values of a part as a decoder returns them
