@@ -202,17 +202,24 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
   constexpr double kRough = 0.85, kGood = 0.97;  // of the targets: while weights are looked for, and in the end
   std::optional<Search::Found> best;
   std::unique_ptr<const AttributedSimplification> best_sequence;
+  std::vector<double> best_weights;
   const auto all = static_cast<double>(original.surface.triangles.size());
   double guess = 0.3 * all, most = all;
+  // Far above the size that is wanted, weights hardly matter: further sequences begin there.
+  constexpr double kHeadStart = 4, kWorthIt = 0.7;  // of that size; of the input
+  std::optional<AttributedMesh> start;
   for (int i = 0; i < std::max(options.num_weightings, 1); ++i) {
-    auto sequence = std::make_unique<const AttributedSimplification>(original, weights, std::vector<uint8_t>(), farthest);
+    const std::vector<double> used = weights;
+    auto sequence = std::make_unique<const AttributedSimplification>(start ? *start : original, used, std::vector<uint8_t>(), farthest);
     Search::Found found = search.Unknown(*sequence, most);
     LACERTA_RETURN_IF_ERROR(search.FindSmallest(*sequence, guess, kRough, &found));
     if (!found.smallest) break;
     search.Reweight(found, &weights);
     // The next weights have to show at once that they are better.
     guess = most = kWorthwhile * std::min(found.Next(), static_cast<double>(found.smallest->mesh.surface.triangles.size()));
+    if (const double size = kHeadStart * guess; !start && size < kWorthIt * all) start = sequence->MeshWith(static_cast<uint32_t>(size));
     best = std::move(found);
+    best_weights = used;
     best_sequence = std::move(sequence);
   }
   Trial trial;
@@ -222,6 +229,9 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
     if (best->smallest->ratio < kGood) LACERTA_RETURN_IF_ERROR(search.FindSmallest(*best_sequence, best->Next(), kGood, &*best));
     trial = std::move(*best->smallest);
     LACERTA_RETURN_IF_ERROR(search.Confirm(*best_sequence, &trial));
+    if (trial.ratio > 1 && best_sequence->num_input_triangles() < original.surface.triangles.size()) {  // where it began is not enough
+      LACERTA_RETURN_IF_ERROR(search.Confirm(AttributedSimplification(original, best_weights, {}, farthest), &trial));
+    }
   }
   return SimplifiedSurface{std::move(trial.mesh), std::move(trial.errors), trial.ratio <= 1};
 }
