@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/value_difference.h"
+
 namespace lacerta {
 namespace {
 
@@ -58,8 +60,8 @@ int RoundedAttribute::FirstLevel() const {
 }
 
 int RoundedAttribute::StartLevel() const {
-  constexpr double kHalfTurn = 180.0, kDegrees = kHalfTurn / 3.14159265358979323846;
-  const double extent = octahedral ? kHalfTurn : range * (direction ? kDegrees : scale);
+  constexpr double kHalfTurn = 180.0;  // what an octahedral number goes over
+  const double extent = octahedral ? kHalfTurn : range * (direction ? kDegreesPerRadian : scale);
   const double steps = extent / (target * std::sqrt(12.0));
   if (!(steps > 1.0)) return FirstLevel();
   return std::isfinite(steps) ? std::clamp(static_cast<int>(kLevelsPerBit * std::log2(steps)), FirstLevel(), kMostLevel) : kMostLevel;

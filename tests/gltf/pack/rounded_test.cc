@@ -68,6 +68,24 @@ TEST(Rounded, IsGivenUpWhereItTakesFarMore) {
   }
 }
 
+TEST(Rounded, IsGivenUpByAllThatHasATarget) {
+  const Primitive primitive = Textured(1.0f);
+  const FamilyMeter meter({&primitive}, DistanceOfPsnr(50.0, BoundingBoxDiagonal(Surface(primitive))), {}, 1024, [](size_t, uint64_t set) { return Texels(set); });
+  const auto free = RoundFamily(meter.primitives(), meter);
+  ASSERT_TRUE(free.ok()) << free.status().message();
+  const uint64_t bytes = free.value().members[0].bytes.size();
+  const auto told = [&](uint64_t most_bytes) {
+    const std::string text = RoundFamily(meter.primitives(), meter, nullptr, {}, nullptr, most_bytes).status().message();
+    return std::stoull(text.substr(text.find("about ") + 6));
+  };
+  Primitive bare = primitive;
+  bare.attributes.resize(1);
+  const FamilyMeter positions({&bare}, meter.error(), {}, 1024, meter.texels_per_unit());
+  const std::string text = RoundFamily(positions.primitives(), positions, nullptr, {}, nullptr, 1).status().message();
+  EXPECT_GT(told(1), 1.2 * static_cast<double>(std::stoull(text.substr(text.find("about ") + 6))));
+  EXPECT_LT(told(1), bytes);
+}
+
 TEST(Rounded, PositionsThatSlideUnderTheTextureGetMoreBits) {
   const TexelScale scale = [](size_t, uint64_t set) { return Texels(set); };
   const double diagonal = BoundingBoxDiagonal(Surface(Textured(1.0f)));
@@ -168,7 +186,8 @@ Primitive FlatSquare(uint32_t num_textured) {
   std::vector<Vec3f> positions;
   std::vector<float> texture;
   for (uint32_t cell = 0; cell < kCells * kCells; ++cell) {
-    const auto x = static_cast<float>(cell % kCells), y = static_cast<float>(cell / kCells);
+    const auto column = cell % kCells, row = cell / kCells;
+    const auto x = static_cast<float>(column), y = static_cast<float>(row);
     const auto v = static_cast<uint32_t>(positions.size());
     positions.insert(positions.end(), {{x, y, 0}, {x + 1, y, 0}, {x + 1, y + 1, 0}, {x, y + 1, 0}});
     const bool is_textured = cell < num_textured;
