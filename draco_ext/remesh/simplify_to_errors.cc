@@ -209,17 +209,16 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
   constexpr double kHeadStart = 4, kWorthIt = 0.7;  // of that size; of the input
   std::optional<AttributedMesh> start;
   for (int i = 0; i < std::max(options.num_weightings, 1); ++i) {
-    const std::vector<double> used = weights;
-    auto sequence = std::make_unique<const AttributedSimplification>(start ? *start : original, used, std::vector<uint8_t>(), farthest);
+    auto sequence = std::make_unique<const AttributedSimplification>(start ? *start : original, weights, std::vector<uint8_t>(), farthest);
     Search::Found found = search.Unknown(*sequence, most);
     LACERTA_RETURN_IF_ERROR(search.FindSmallest(*sequence, guess, kRough, &found));
     if (!found.smallest) break;
+    best_weights = weights;
     search.Reweight(found, &weights);
     // The next weights have to show at once that they are better.
     guess = most = kWorthwhile * std::min(found.Next(), static_cast<double>(found.smallest->mesh.surface.triangles.size()));
     if (const double size = kHeadStart * guess; !start && size < kWorthIt * all) start = sequence->MeshWith(static_cast<uint32_t>(size));
     best = std::move(found);
-    best_weights = used;
     best_sequence = std::move(sequence);
   }
   Trial trial;

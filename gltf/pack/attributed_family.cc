@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <optional>
@@ -34,8 +33,6 @@ std::optional<AttributeKind> KindOf(const Attribute& attribute, const std::set<s
     return AttributeKind::kGeneric;
   return std::nullopt;
 }
-
-uint64_t SetOf(const std::string& name) { return std::strtoull(name.c_str() + std::strlen("TEXCOORD_"), nullptr, 10); }
 
 StatusOr<VertexSoup::Attribute> PosesOf(const Primitive& primitive, const Skin& skin) {
   LACERTA_ASSIGN_OR_RETURN(const VertexInfluences influences, ReadInfluences(primitive, skin.num_joints));
@@ -123,7 +120,7 @@ double ColorTarget(const AttributedMesh& mesh, const MeshAttribute& color, doubl
 
 std::string SoupName(const Attribute& attribute, size_t member, const TexelScale& scale) {
   if (!BeginsWith(attribute.name, "TEXCOORD_")) return attribute.name;
-  return attribute.name + "/" + std::to_string(scale(member, SetOf(attribute.name)));
+  return attribute.name + "/" + std::to_string(scale(member, SetOfTexCoord(attribute.name)));
 }
 
 std::set<std::string> CustomAttributesOf(const std::vector<const Primitive*>& primitives) {

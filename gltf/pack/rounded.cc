@@ -76,6 +76,14 @@ std::map<std::string, double> TargetsByName(const FamilyMeter& meter) {
   return targets;
 }
 
+// Has a part of an attribute, which a primitive calls `name`, coded at a level. Gives its bits.
+int SetPrecision(const RoundedAttribute& attribute, const RoundedAttribute::Part& part, const std::string& name, int level, DracoPrecision* precision) {
+  if (attribute.octahedral) return precision->normal_bits = level / kLevelsPerBit;
+  const Lattice lattice = attribute.LatticeAt(part, level);
+  precision->lattices[name] = lattice;
+  return lattice.bits;
+}
+
 class FamilyRounder {
  public:
   FamilyRounder(const std::vector<const Primitive*>& primitives, const FamilyMeter& meter, const SurfaceErrors* own,
@@ -177,13 +185,8 @@ class FamilyRounder {
         const int level = attribute.AtOrAbove(attribute.StartLevel() - kTooCoarse);
         for (const RoundedAttribute::Part& part : attribute.parts) {
           if (part.member != m) continue;
-          const Attribute& own = primitives_[m]->attributes[part.index];
-          coarse.attributes.push_back(own);
-          if (attribute.octahedral) {
-            precision.normal_bits = level / kLevelsPerBit;
-          } else {
-            precision.lattices[own.name] = attribute.LatticeAt(part, level);
-          }
+          coarse.attributes.push_back(primitives_[m]->attributes[part.index]);
+          SetPrecision(attribute, part, coarse.attributes.back().name, level, &precision);
         }
       }
       return DracoPrimitiveBytes(coarse, precision, {});
@@ -511,15 +514,7 @@ class FamilyRounder {
     const RoundedAttribute& attribute = attributes_[a];
     for (const RoundedAttribute::Part& part : attribute.parts) {
       const std::string& name = primitives_[part.member]->attributes[part.index].name;
-      DracoPrecision& precision = family->precisions[part.member];
-      int bits = level / kLevelsPerBit;
-      if (attribute.octahedral) {
-        precision.normal_bits = bits;
-      } else {
-        const Lattice lattice = attribute.LatticeAt(part, level);
-        precision.lattices[name] = lattice;
-        bits = lattice.bits;
-      }
+      const int bits = SetPrecision(attribute, part, name, level, &family->precisions[part.member]);
       for (AttributeReport& report : family->reports[part.member]) {
         if (report.name != name) continue;
         report.bits = bits;

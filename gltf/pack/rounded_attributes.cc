@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <utility>
 
@@ -26,9 +25,8 @@ std::optional<RoundedAttribute> ToleranceOf(const Attribute& attribute, size_t m
     result.octahedral = name == "NORMAL";
     result.unit = "degrees";
   } else if (BeginsWith(name, "TEXCOORD_")) {
-    const uint64_t set = std::strtoull(name.c_str() + std::char_traits<char>::length("TEXCOORD_"), nullptr, 10);
     result.target = targets.uv_texels;
-    result.scale = texels_per_unit(member, set);
+    result.scale = texels_per_unit(member, SetOfTexCoord(name));
     result.unit = "texels";
   } else if (BeginsWith(name, "WEIGHTS_")) {
     result.target = targets.weight * std::sqrt(attribute.data.components);
@@ -54,6 +52,11 @@ int BitsAtOrAbove(int level) { return (level + kLevelsPerBit - 1) / kLevelsPerBi
 
 }  // namespace
 
+int LevelOfSteps(double steps) {
+  if (!(steps > 1.0)) return 0;
+  return std::isfinite(steps) ? std::min(static_cast<int>(kLevelsPerBit * std::log2(steps)), kMostLevel) : kMostLevel;
+}
+
 int RoundedAttribute::FirstLevel() const {
   constexpr int kLeastOctahedralBits = 3;
   return kLevelsPerBit * (octahedral ? kLeastOctahedralBits : 1);
@@ -62,9 +65,7 @@ int RoundedAttribute::FirstLevel() const {
 int RoundedAttribute::StartLevel() const {
   constexpr double kHalfTurn = 180.0;  // what an octahedral number goes over
   const double extent = octahedral ? kHalfTurn : range * (direction ? kDegreesPerRadian : scale);
-  const double steps = extent / (target * std::sqrt(12.0));
-  if (!(steps > 1.0)) return FirstLevel();
-  return std::isfinite(steps) ? std::clamp(static_cast<int>(kLevelsPerBit * std::log2(steps)), FirstLevel(), kMostLevel) : kMostLevel;
+  return LevelOfSteps(extent / (target * std::sqrt(12.0)));
 }
 
 int RoundedAttribute::AtOrAbove(int level) const {

@@ -17,6 +17,9 @@ namespace lacerta {
 inline constexpr int kLevelsPerBit = 4;
 inline constexpr int kMostLevel = kLevelsPerBit * (kMostLatticeBits - 1);
 
+// At which a range is so many steps, or somewhat fewer: 0 .. kMostLevel.
+int LevelOfSteps(double steps);
+
 // One attribute of those members that share its name and scale.
 struct RoundedAttribute {
   struct Part {

@@ -46,8 +46,7 @@ RoundingForecast::RoundingForecast(const std::vector<const Primitive*>& primitiv
 
 int RoundingForecast::StartLevel(double error) const {
   const double steps = box_.range / (error * std::sqrt(36.0));  // a step moves by sqrt(1/12), interpolation and the descent take two thirds of squares
-  if (!(steps > 1.0)) return 1;
-  return std::isfinite(steps) ? std::min(static_cast<int>(kLevelsPerBit * std::log2(steps)) + 1, kMostLevel) : kMostLevel;
+  return std::min(LevelOfSteps(steps) + 1, kMostLevel);
 }
 
 Lattice RoundingForecast::LatticeAt(int level) const { return LatticeOfStep(box_, box_.range * std::exp2(-static_cast<float>(level) / kLevelsPerBit)); }

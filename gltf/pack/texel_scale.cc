@@ -2,17 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdlib>
+#include <cstring>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "document/image_size.h"
 #include "document/materials.h"
+#include "geometry/bounding_box.h"
 #include "pack/unused_attributes.h"
 
 namespace lacerta {
 namespace {
+
+constexpr const char* kTexCoord = "TEXCOORD_";
 
 // The largest scale of `set` in any textureInfo of a material.
 double LargestScale(const Json& material, uint64_t set) {
@@ -35,35 +40,23 @@ double RepeatsPerUnit(const GltfDocument& document, const std::vector<Place>& pl
   return std::min(scale, kMostRepeats);
 }
 
-// Of values of one set in all members.
-struct Range {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-
-  void Add(const AccessorData& data, uint32_t component) {
-    for (uint64_t v = 0; v < data.count; ++v) {
-      const double value = data.Float(v, component);
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-  }
-};
-
 // The same of a set that no texture is laid by.
 double RepeatsPerUnitUnseen(const std::vector<PlacedPrimitive>& members, const std::string& name) {
   constexpr double kMostRepeats = 4.0, kLeastPerUnit = 1e-6;
-  double extent = 0.0;
-  for (uint32_t axis = 0; axis < 2; ++axis) {
-    Range range;
-    for (const PlacedPrimitive& member : members) {
-      const Attribute* attribute = member.primitive->Find(name);
-      if (attribute != nullptr && attribute->data.components == 2) range.Add(attribute->data, axis);
-    }
-    extent = std::max(extent, range.high - range.low);
+  BoundingBox box;  // of all values, in x and y
+  for (const PlacedPrimitive& member : members) {
+    const Attribute* attribute = member.primitive->Find(name);
+    if (attribute == nullptr || attribute->data.components != 2) continue;
+    for (uint64_t v = 0; v < attribute->data.count; ++v) Extend(Vec3f{attribute->data.Float(v, 0), attribute->data.Float(v, 1), 0.0f}, &box);
   }
+  const Vec3d sides = Vec3Cast<double>(box.high) - Vec3Cast<double>(box.low);
+  const double extent = std::max(sides.x, sides.y);
   return extent > kMostRepeats ? std::max(kMostRepeats / extent, kLeastPerUnit) : 1.0;
 }
 
 }  // namespace
+
+uint64_t SetOfTexCoord(const std::string& name) { return std::strtoull(name.c_str() + std::strlen(kTexCoord), nullptr, 10); }
 
 uint64_t TexelSide(const GltfDocument& document) {
   constexpr uint64_t kLeastSide = 1024;
@@ -71,10 +64,15 @@ uint64_t TexelSide(const GltfDocument& document) {
 }
 
 TexelScale TexelScaleOf(const GltfDocument& document, const std::vector<PlacedPrimitive>& members, uint64_t side) {
-  constexpr uint64_t kSets = 8;
+  std::set<std::string> names;
+  for (const PlacedPrimitive& member : members) {
+    for (const Attribute& attribute : member.primitive->attributes) {
+      if (attribute.name.rfind(kTexCoord, 0) == 0) names.insert(attribute.name);
+    }
+  }
   std::map<std::pair<size_t, uint64_t>, double> repeats;
-  for (uint64_t set = 0; set < kSets; ++set) {
-    const std::string name = "TEXCOORD_" + std::to_string(set);
+  for (const std::string& name : names) {
+    const uint64_t set = SetOfTexCoord(name);
     const bool is_seen = std::any_of(members.begin(), members.end(), [&](const PlacedPrimitive& member) { return !IsUnused(document, *member.places, name); });
     const double unseen = is_seen ? 1.0 : RepeatsPerUnitUnseen(members, name);
     for (size_t m = 0; m < members.size(); ++m) repeats[{m, set}] = is_seen ? RepeatsPerUnit(document, *members[m].places, set) : unseen;

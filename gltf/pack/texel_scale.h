@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "document/gltf_document.h"
@@ -14,6 +15,9 @@ namespace lacerta {
 
 // Texels along one unit of TEXCOORD_`set` of a member of a family.
 using TexelScale = std::function<double(size_t member, uint64_t set)>;
+
+// The n of TEXCOORD_n.
+uint64_t SetOfTexCoord(const std::string& name);
 
 // The side of the texture that texels are of: the longest of the asset's images, but at least 1024. Smaller ones
 // often stand in for others, and the geometry outlives them.
