@@ -55,9 +55,12 @@ class TriangleTree {
   ClosestPointResult ClosestPoint(const Vec3f& p,
                                   float max_squared_distance = std::numeric_limits<float>::infinity()) const;
 
-  // The same without a limit. `hint` is a face thought to be near p, such as the one found for a neighbour of p: its
+  // ClosestPoint without a limit. `hint` is a face thought to be near p, such as the one found for a neighbour of p: its
   // distance bounds the search from the start. It may be any number: what is no face of the tree is no hint.
   ClosestPointResult ClosestPointNear(const Vec3f& p, uint32_t hint) const;
+
+  // Whether ClosestPoint finds one, in less time where there are many.
+  bool IsNear(const Vec3f& p, float max_squared_distance) const;
 
   // Appends to *points for each face not farther from p than max_squared_distance its point closest to p, the nearest first, of equal ones
   // that of the lower face; but for no more than `max_points` faces: the nearest where there are more.

@@ -203,6 +203,19 @@ ClosestPointResult TriangleTree::ClosestPointNear(const Vec3f& p, uint32_t hint)
   return Finish(search);
 }
 
+bool TriangleTree::IsNear(const Vec3f& p, float max_squared_distance) const {
+  if (!IsUsable(p) || !(max_squared_distance >= 0.0f)) return false;
+  Search search;
+  search.p = p;
+  search.pd = Vec3Cast<double>(p);
+  search.SetBound(max_squared_distance);
+  VisitLeaves(p - origin_, search.box_bound2, [&](uint32_t first, uint32_t count) {
+    for (uint32_t slot = first; slot < first + count && search.slot == SurfacePoint::kNone; ++slot) TestSlot(slot, &search);
+    if (search.slot != SurfacePoint::kNone) search.box_bound2 = -1;  // nothing else is in reach then
+  });
+  return search.slot != SurfacePoint::kNone;
+}
+
 void TriangleTree::PointsNear(const Vec3f& p, float max_squared_distance, size_t max_points,
                               std::vector<ClosestPointResult>* points) const {
   if (max_points == 0 || !IsUsable(p) || !(max_squared_distance >= 0.0f)) return;

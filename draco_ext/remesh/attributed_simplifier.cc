@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/bounding_box.h"
 #include "remesh/edge_corners.h"
@@ -20,7 +21,7 @@ constexpr double kRemembered = 0.1, kRememberedCurves = 0.3;
 
 }  // namespace
 
-AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const WedgeMesh& start, const std::vector<double>& weights, double farthest,
+AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const WedgeMesh& start, const std::vector<double>& weights, const SimplificationBounds& bounds,
                                            AttributedSimplification* sequence)
     : input_(input),
       start_(start),
@@ -41,9 +42,14 @@ AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const We
   const Vec3d low = Vec3Cast<double>(box.low), high = Vec3Cast<double>(box.high);
   center_ = (low + high) * 0.5;
   if (Norm(high - low) > 0) scale_ = Norm(high - low);
-  most_squared_ = farthest / scale_ * (farthest / scale_);
+  most_squared_ = bounds.charts / scale_ * (bounds.charts / scale_);
   positions_.reserve(start.num_vertices());
   for (const Vec3f& p : start.mesh.positions) positions_.push_back((Vec3Cast<double>(p) - center_) * (1 / scale_));
+  if (bounds.anywhere > 0) {
+    std::vector<uint32_t> groups;
+    for (const uint32_t f : start.source_face) groups.push_back(input.GroupOf(f));
+    deviation_.emplace(positions_, triangles_, std::move(groups), bounds.anywhere / scale_);
+  }
   for (size_t a = 0; a < input.attributes.size(); ++a) {
     channels_.emplace_back(input.attributes[a], start.attributes[a], weights[a], start.num_vertices());
   }
@@ -244,6 +250,21 @@ bool AttributedSimplifier::MayJoinCurves(uint32_t u, uint32_t v, const Vec3d& po
   return planes.Evaluate(position) < most_squared_ * planes.quadratic.trace();
 }
 
+// Whether no point of the surface goes too far.
+bool AttributedSimplifier::StaysNear(uint32_t u, uint32_t v, const Vec3d& position) {
+  if (!deviation_) return true;
+  faces_.clear();
+  for (const std::vector<uint32_t>* corners : {&corners_u_, &corners_v_}) {
+    for (const uint32_t corner : *corners) {
+      const uint32_t t = corner / 3;
+      const bool goes = Has(t, u) && Has(t, v);
+      if (goes && corners == &corners_v_) continue;
+      faces_.push_back({t, !goes, positions_[VertexOf(triangles_, NextCorner(corner))], positions_[VertexOf(triangles_, PreviousCorner(corner))]});
+    }
+  }
+  return deviation_->Allows(position, faces_);
+}
+
 bool AttributedSimplifier::AnyTurnsOver(uint32_t moved, uint32_t other, const std::vector<uint32_t>& corners, const Vec3d& to) const {
   return std::any_of(corners.begin(), corners.end(), [&](uint32_t corner) {
     if (Has(corner / 3, other)) return false;
@@ -322,10 +343,11 @@ void AttributedSimplifier::Run() {
     if (!KeepsTopology(kept, removed) || !MayJoinCurves(kept, removed, position) || AnyTurnsOver(kept, removed, corners_u_, position) ||
         AnyTurnsOver(removed, kept, corners_v_, position) || AnyTextureTurnsOver(removed, corners_u_) ||
         AnyTextureTurnsOver(kept, corners_v_) || AnyTurnsFromNormals(kept, removed, corners_u_, position) ||
-        AnyTurnsFromNormals(removed, kept, corners_v_, position)) {
+        AnyTurnsFromNormals(removed, kept, corners_v_, position) || !StaysNear(kept, removed, position)) {
       queue_.Block(*candidate);
       continue;
     }
+    if (deviation_) deviation_->Accept();
     Collapse(kept, removed, position);
   }
 }

@@ -4,19 +4,21 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "remesh/attribute_quadrics.h"
 #include "remesh/attributed_simplify.h"
 #include "remesh/collapse_queue.h"
 #include "remesh/corner_rings.h"
+#include "remesh/deviation_bound.h"
 #include "remesh/placement.h"
 
 namespace lacerta {
 
 class AttributedSimplifier {
  public:
-  AttributedSimplifier(const AttributedMesh& input, const WedgeMesh& start, const std::vector<double>& weights, double farthest,
+  AttributedSimplifier(const AttributedMesh& input, const WedgeMesh& start, const std::vector<double>& weights, const SimplificationBounds& bounds,
                        AttributedSimplification* sequence);
   void Run();
 
@@ -73,6 +75,7 @@ class AttributedSimplifier {
   Tip TipOf(uint32_t triangle, uint32_t u, uint32_t v) const;
   bool HasNeighborOfGroup(uint32_t triangle, uint32_t u, uint32_t v, uint32_t tip) const;
   bool MayJoinCurves(uint32_t u, uint32_t v, const Vec3d& position) const;
+  bool StaysNear(uint32_t u, uint32_t v, const Vec3d& position);
   void GatherNodes(uint32_t u, uint32_t v);
   void SumNodes();
   Placement Place(uint32_t u, uint32_t v);
@@ -112,10 +115,12 @@ class AttributedSimplifier {
   uint32_t num_alive_ = 0;
   double edge_weight_ = 0;
   double most_squared_ = 0;  // squared distance from its planes that a vertex may have where curves join
+  std::optional<DeviationBound> deviation_;
   CollapseQueue<Candidate> queue_;
 
   // Of the edge that is looked at.
   std::vector<uint32_t> corners_u_, corners_v_, around_;
+  std::vector<DeviationBound::Face> faces_;
   std::vector<NodeGroup> groups_;
   std::vector<uint32_t> group_members_;
   std::vector<double> sums_;        // rows of the groups, one after the other

@@ -29,12 +29,12 @@ size_t CountUpTo(const std::vector<Event>& events, size_t num_collapses) {
 
 }  // namespace
 
-AttributedSimplification::AttributedSimplification(AttributedMesh input, const std::vector<double>& weights, const std::vector<uint8_t>& held, double farthest)
+AttributedSimplification::AttributedSimplification(AttributedMesh input, const std::vector<double>& weights, const std::vector<uint8_t>& held, const SimplificationBounds& bounds)
     : input_(std::move(input)), start_(MakeWedgeMesh(input_)), histories_(input_.attributes.size()) {
   for (uint32_t v = 0; v < start_.num_vertices() && !held.empty(); ++v) {
     if (held[start_.source_vertex[v]] != 0) start_.freedom[v] = VertexFreedom::kHeld;
   }
-  if (!start_.mesh.triangles.empty()) AttributedSimplifier(input_, start_, weights, farthest, this).Run();
+  if (!start_.mesh.triangles.empty()) AttributedSimplifier(input_, start_, weights, bounds, this).Run();
 }
 
 void AttributedSimplification::WriteValues(size_t num_collapses, const NodeHistory& history, const AttributeNodes& nodes,

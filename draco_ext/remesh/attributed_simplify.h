@@ -11,11 +11,16 @@
 
 namespace lacerta {
 
+// How far the surface may go from the input, in mesh units; 0: as far as it comes.
+struct SimplificationBounds {
+  double charts = 0;    // vertices from the planes that they stand for, RMS, where a chart vanishes; 0: charts stay
+  double anywhere = 0;  // any point of one surface from the other, as far as samples tell (DeviationBound); those of a group from triangles of that group
+};
+
 class AttributedSimplification {
  public:
   // input: one that CheckAttributedMesh accepts. weights: for each attribute, the distance relative to the bounding box's
   // diagonal that is as bad an error as one unit of the attribute; >= 0. held: for each vertex 1 where nothing may change, else 0; empty: none.
-  // farthest: mesh units, how far vertices may come from the planes that they stand for where a chart vanishes (below), RMS; 0: charts stay.
   //
   // Curves (seams, borders of groups, open borders; wedge_mesh.h) stay what they are: a vertex on one comes together only with its
   // neighbors along it; where the surface had to be cut, vertices stand still. Curves meet where the last triangle between them goes, as of a
@@ -24,7 +29,7 @@ class AttributedSimplification {
   // changes the topology.
   // Deterministic; O(n log n).
   AttributedSimplification(AttributedMesh input, const std::vector<double>& weights, const std::vector<uint8_t>& held = {},
-                           double farthest = 0.0);
+                           const SimplificationBounds& bounds = {});
 
   uint32_t num_input_triangles() const { return static_cast<uint32_t>(start_.mesh.triangles.size()); }
   // Of the coarsest surface: no collapse is possible any more.

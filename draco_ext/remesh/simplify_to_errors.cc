@@ -34,6 +34,14 @@ double ShapeTarget(const SurfaceErrorMeter& meter, const ErrorTargets& targets) 
   return std::min(targets.distance, kFarthest * meter.diagonal());
 }
 
+// Small parts of large scenes may be far off for their size: what is allowed in the mean of the scene is not to be taken ten times of them.
+SimplificationBounds BoundsOf(const SurfaceErrorMeter& meter, const ErrorTargets& targets) {
+  constexpr double kOfCharts = 2, kAnywhere = 10, kLeastAnywhere = 4;
+  const double shape = ShapeTarget(meter, targets);
+  const bool is_bounded = targets.distance < meter.diagonal();
+  return {kOfCharts * shape, is_bounded ? std::max(kAnywhere * shape, kLeastAnywhere * targets.distance) : 0};
+}
+
 struct Trial {
   AttributedMesh mesh;
   SurfaceErrors errors;
@@ -196,8 +204,7 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
   LACERTA_RETURN_IF_ERROR(CheckTargets(original, targets));
   const Search search(original, meter, targets, options);
   constexpr double kWorthwhile = 0.98;  // of the size, for another weighting
-  constexpr double kFarthest = 2;       // of the distance allowed in the mean, where a chart vanishes
-  const double farthest = kFarthest * ShapeTarget(meter, targets);
+  const SimplificationBounds bounds = BoundsOf(meter, targets);
   std::vector<double> weights = WeightsOfTargets(original, meter, targets);
   constexpr double kRough = 0.85, kGood = 0.97;  // of the targets: while weights are looked for, and in the end
   std::optional<Search::Found> best;
@@ -209,7 +216,7 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
   constexpr double kHeadStart = 4, kWorthIt = 0.7;  // of that size; of the input
   std::optional<AttributedMesh> start;
   for (int i = 0; i < std::max(options.num_weightings, 1); ++i) {
-    auto sequence = std::make_unique<const AttributedSimplification>(start ? *start : original, weights, std::vector<uint8_t>(), farthest);
+    auto sequence = std::make_unique<const AttributedSimplification>(start ? *start : original, weights, std::vector<uint8_t>(), bounds);
     Search::Found found = search.Unknown(*sequence, most);
     LACERTA_RETURN_IF_ERROR(search.FindSmallest(*sequence, guess, kRough, &found));
     if (!found.smallest) break;
@@ -229,7 +236,7 @@ StatusOr<SimplifiedSurface> SimplifyToErrors(const AttributedMesh& original, con
     trial = std::move(*best->smallest);
     LACERTA_RETURN_IF_ERROR(search.Confirm(*best_sequence, &trial));
     if (trial.ratio > 1 && best_sequence->num_input_triangles() < original.surface.triangles.size()) {  // where it began is not enough
-      LACERTA_RETURN_IF_ERROR(search.Confirm(AttributedSimplification(original, best_weights, {}, farthest), &trial));
+      LACERTA_RETURN_IF_ERROR(search.Confirm(AttributedSimplification(original, best_weights, {}, bounds), &trial));
     }
   }
   return SimplifiedSurface{std::move(trial.mesh), std::move(trial.errors), trial.ratio <= 1};

@@ -26,6 +26,7 @@
 #include "document/primitive.h"
 #include "lacerta/file_io.h"
 #include "lacerta/gltf.h"
+#include "lacerta/surface_distance.h"
 #include "pack/attributed_family.h"
 #include "pack/family.h"
 #include "pack/texel_scale.h"
@@ -277,9 +278,12 @@ Status Report(const std::vector<std::string>& files, const Errors& wanted, bool 
   LACERTA_ASSIGN_OR_RETURN(const Errors ours, MeasureAll(judges, unpacked.primitives, kSamples));
   const StatusOr<TriangleMesh> scene = ReadScene(files[0]);  // some show no triangles: points, or meshes outside of scenes
   TriangleMesh before, after;
+  double farthest = 0;  // any point of one from the other, in distances that the PSNR allows in the mean
   if (scene.ok()) {
     before = scene.value();
     LACERTA_ASSIGN_OR_RETURN(after, ReadScene(files[2]));
+    LACERTA_ASSIGN_OR_RETURN(const SurfaceDistance distance, MeasureSurfaceDistance(before, after));
+    farthest = distance.Hausdorff() / DistanceOfPsnr(wanted.psnr, BoundingBoxDiagonal(before));
   }
 
   Stock stock;  // nothing where Draco refuses
@@ -288,9 +292,9 @@ Status Report(const std::vector<std::string>& files, const Errors& wanted, bool 
   }
   uint64_t vertices = 0;
   for (const Primitive& primitive : original.primitives) vertices += primitive.num_vertices;
-  std::printf("{\"vertices\": %llu, \"psnr\": %.2f, \"texels\": %.3f, \"degrees\": %.3f, \"turned\": %.5f, \"borderEdgesBefore\": %llu, \"borderEdgesAfter\": %llu, "
+  std::printf("{\"vertices\": %llu, \"psnr\": %.2f, \"texels\": %.3f, \"degrees\": %.3f, \"turned\": %.5f, \"farthest\": %.1f, \"borderEdgesBefore\": %llu, \"borderEdgesAfter\": %llu, "
               "\"stockBytes\": %llu, \"stockBits\": [%d, %d, %d], \"stockPsnr\": %.2f, \"stockTexels\": %.3f, \"stockDegrees\": %.3f}\n",
-              static_cast<unsigned long long>(vertices), ours.psnr, ours.texels, ours.degrees, ours.turned,
+              static_cast<unsigned long long>(vertices), ours.psnr, ours.texels, ours.degrees, ours.turned, farthest,
               static_cast<unsigned long long>(BorderEdges(before)), static_cast<unsigned long long>(BorderEdges(after)),
               static_cast<unsigned long long>(stock.bytes + original.target_bytes), stock.bits[0], stock.bits[1], stock.bits[2], stock.errors.psnr, stock.errors.texels, stock.errors.degrees);
   return Status();

@@ -91,6 +91,8 @@ TEST(TriangleTree, ClosestPointAgreesWithBruteForceOnAllShapes) {
       const ClosestPointResult result = tree.ClosestPoint(p);
       EXPECT_NEAR(std::sqrt(static_cast<double>(result.squared_distance)), expected, 1e-6 * expected + 1e-15);
       ExpectConsistent(shape.mesh, p, result);
+      EXPECT_TRUE(tree.IsNear(p, result.squared_distance * 1.001f));
+      EXPECT_EQ(tree.IsNear(p, result.squared_distance * 0.999f), result.squared_distance == 0);
       const ClosestPointResult hinted = tree.ClosestPointNear(p, hint);
       EXPECT_EQ(hinted.squared_distance, result.squared_distance);
       ExpectConsistent(shape.mesh, p, hinted);
@@ -212,6 +214,10 @@ TEST(TriangleTree, LimitIsInclusive) {
   EXPECT_EQ(tree.ClosestPoint(p, 0.25f).squared_distance, 0.25f);
   EXPECT_EQ(tree.ClosestPoint({0.3f, 0.4f, 0.0f}, 0.0f).squared_distance, 0.0f);
   EXPECT_EQ(tree.ClosestPoint(p, -1.0f).point.face, SurfacePoint::kNone);
+  EXPECT_FALSE(tree.IsNear(p, 0.2499f));
+  EXPECT_TRUE(tree.IsNear(p, 0.25f));
+  EXPECT_FALSE(tree.IsNear(p, -1.0f));
+  EXPECT_FALSE(tree.IsNear({std::nanf(""), 0, 0}, 1.0f));
 }
 
 TEST(TriangleTree, WithoutTrianglesNothingIsFound) {

@@ -265,15 +265,15 @@ TEST(AttributedSimplificationTest, ChartsVanishWhereTheirCurvesAreNear) {
   EXPECT_GE(whole.fewest_triangles(), kSide * kSide);  // a triangle for each chart
   // Curves come together that are a square apart.
   constexpr double kSquare = 1.0 / kSide;
-  EXPECT_LT(AttributedSimplification(flat, {kNormal}, {}, 2 * kSquare).fewest_triangles(), kSide * kSide / 4);
-  EXPECT_EQ(AttributedSimplification(flat, {kNormal}, {}, 1e-3 * kSquare).fewest_triangles(), whole.fewest_triangles());
+  EXPECT_LT(AttributedSimplification(flat, {kNormal}, {}, {2 * kSquare}).fewest_triangles(), kSide * kSide / 4);
+  EXPECT_EQ(AttributedSimplification(flat, {kNormal}, {}, {1e-3 * kSquare}).fewest_triangles(), whole.fewest_triangles());
 }
 
 TEST(AttributedSimplificationTest, VanishedChartsLeaveTheShape) {
   const AttributedMesh dome = Facets(24, 1.5f, 1);
   double last = 0;
   for (const double farthest : {0.01, 0.04}) {
-    const AttributedSimplification sequence(dome, {kNormal}, {}, farthest);
+    const AttributedSimplification sequence(dome, {kNormal}, {}, {farthest});
     const AttributedMesh small = sequence.MeshWith(1);
     EXPECT_LT(small.surface.triangles.size(), farthest > 0.02 ? 300u : 1100u) << farthest;
     const double error = PositionError(dome, small);
@@ -285,10 +285,36 @@ TEST(AttributedSimplificationTest, VanishedChartsLeaveTheShape) {
 
 TEST(AttributedSimplificationTest, NoGroupVanishes) {
   const AttributedMesh mesh = Facets(12, 0.0f, 6);
-  const AttributedMesh small = AttributedSimplification(mesh, {kNormal}, {}, 10.0).MeshWith(1);
+  const AttributedMesh small = AttributedSimplification(mesh, {kNormal}, {}, {10.0}).MeshWith(1);
   ASSERT_TRUE(CheckAttributedMesh(small).ok());
   EXPECT_LT(small.surface.triangles.size(), 60u);
   for (uint32_t g = 0; g < 6; ++g) EXPECT_GE(std::count(small.groups.begin(), small.groups.end(), g), 1) << g;
+}
+
+// A plate with a narrow tab, which is nothing of its area.
+TEST(AttributedSimplificationTest, NothingGoesFartherThanItsBound) {
+  VertexSoup plate = shapes::TexturedGrid(16, 16, 0.05f);
+  const Vec3f& corner = plate.positions[16];
+  const uint32_t first = 16, second = 2 * 16 + 1;
+  const float width = 1.0f / 16, length = 0.5f;
+  ASSERT_NEAR(Norm(Vec3Cast<double>(plate.positions[second] - corner)), width, 0.01);
+  plate.attributes.clear();
+  const auto last = static_cast<uint32_t>(plate.positions.size());
+  plate.positions.push_back(corner + Vec3f{length, 0, 0});
+  plate.positions.push_back(plate.positions[second] + Vec3f{length, 0, 0});
+  plate.triangles.push_back({first, last, second});
+  plate.triangles.push_back({second, last, last + 1});
+  const AttributedMesh mesh = Weld({plate});
+  for (const double bound : {0.0, 0.02, 0.05}) {
+    const AttributedMesh small = AttributedSimplification(mesh, {}, {}, {0, bound}).MeshWith(1);
+    const double farthest = MeasureSurfaceDistance(mesh.surface, small.surface).value().Hausdorff();
+    if (bound > 0) {
+      EXPECT_LT(farthest, 1.2 * bound);
+      EXPECT_GT(farthest, 0.3 * bound);
+    } else {
+      EXPECT_GT(farthest, 0.3);
+    }
+  }
 }
 
 TEST(AttributedSimplificationTest, IsTheSameEveryTime) {
