@@ -11,10 +11,10 @@
 
 namespace lacerta {
 
-// How far the surface may go from the input, in mesh units; 0: as far as it comes.
+// How far the surface may go from the input, in mesh units.
 struct SimplificationBounds {
-  double charts = 0;    // vertices from the planes that they stand for, RMS, where a chart vanishes; 0: charts stay
-  double anywhere = 0;  // any point of one surface from the other, as far as samples tell (DeviationBound); those of a group from triangles of that group
+  double charts = 0;    // where a chart vanishes (below): vertices from the planes that they stand for, RMS; 0: charts stay
+  double anywhere = 0;  // any point of either surface from the other, as far as samples tell (deviation_bound.h); 0: no bound
 };
 
 class AttributedSimplification {

@@ -34,12 +34,12 @@ double ShapeTarget(const SurfaceErrorMeter& meter, const ErrorTargets& targets) 
   return std::min(targets.distance, kFarthest * meter.diagonal());
 }
 
-// Small parts of large scenes may be far off for their size: what is allowed in the mean of the scene is not to be taken ten times of them.
+// Of distances that are allowed in the mean. Small parts of large scenes may be far off for their size, and ten times as far would be out of shape.
 SimplificationBounds BoundsOf(const SurfaceErrorMeter& meter, const ErrorTargets& targets) {
-  constexpr double kOfCharts = 2, kAnywhere = 10, kLeastAnywhere = 4;
+  constexpr double kCharts = 2, kAnywhere = 10, kAnywhereOfSmall = 4;
   const double shape = ShapeTarget(meter, targets);
   const bool is_bounded = targets.distance < meter.diagonal();
-  return {kOfCharts * shape, is_bounded ? std::max(kAnywhere * shape, kLeastAnywhere * targets.distance) : 0};
+  return {kCharts * shape, is_bounded ? std::max(kAnywhere * shape, kAnywhereOfSmall * targets.distance) : 0};
 }
 
 struct Trial {
