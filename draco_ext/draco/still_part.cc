@@ -24,7 +24,7 @@ std::vector<uint8_t> LiesOn(const ManifoldMesh& part, const TriangleMesh& surfac
   for (size_t f = 0; f < part.mesh.triangles.size(); ++f) {
     uint8_t& result = lies_on[part.component[f]];
     for (const uint32_t v : part.mesh.triangles[f]) {
-      if (result) result = tree.ClosestPoint(part.mesh.positions[v], squared).point.face != SurfacePoint::kNone;
+      if (result) result = tree.IsNear(part.mesh.positions[v], squared);
     }
   }
   return lies_on;
