@@ -17,7 +17,8 @@ struct AttributeFitOptions {
 
 // Sets the attribute values of *mesh, which has the attributes and groups of `original`, to the least squares of the difference to the
 // original at its closest points, on whichever side of a seam is nearer to the value that is there now; points far off count little.
-// Which corners share a value at a vertex stays; where a texture triangle would be mirrored its values stay, too.
+// Which corners share a value at a vertex stays; where a texture triangle would be mirrored its values stay, too, and so do
+// weights and generic values that are 0, since only others are stored.
 void FitAttributes(const GroupSurface& original, const AttributeFitOptions& options, AttributedMesh* mesh);
 
 }  // namespace lacerta

@@ -71,7 +71,7 @@ TEST(FitAttributesTest, NormalsHaveUnitLength) {
   const AttributedMesh original = Weld(shapes::TexturedGrid(60, 60, 0.4f));
   const AttributedMesh fitted = Fitted(original, Weld(shapes::TexturedGrid(8, 8, 0.4f)));
   for (uint32_t i = 0; i < fitted.attributes[1].num_values(); ++i) {
-    const float* n = &fitted.attributes[1].values[3 * i];
+    const float* n = &fitted.attributes[1].values[3 * size_t{i}];
     EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-5);
   }
   EXPECT_LT(Error(original, fitted, 1).rms, Error(original, Weld(shapes::TexturedGrid(8, 8, 0.4f)), 1).rms);
@@ -86,9 +86,65 @@ TEST(FitAttributesTest, MirrorsNoTriangleOfATexture) {
   const AttributedMesh fitted = Fitted(Weld(folded), mesh);
   const MeshAttribute& texture = fitted.attributes[0];
   for (const Triangle& t : texture.corners) {
-    const auto at = [&](size_t k) { return &texture.values[2 * t[k]]; };
+    const auto at = [&](size_t k) { return &texture.values[2 * size_t{t[k]}]; };
     EXPECT_GT((at(1)[0] - at(0)[0]) * (at(2)[1] - at(0)[1]) - (at(1)[1] - at(0)[1]) * (at(2)[0] - at(0)[0]), 0);
   }
+}
+
+// Values of `count` components over a plane: component c is a hill around a place of its own.
+AttributedMesh Hills(int n, size_t count) {
+  AttributedMesh mesh = Weld(shapes::TexturedGrid(n, n));
+  MeshAttribute hills;
+  hills.kind = AttributeKind::kGeneric;
+  hills.components = static_cast<uint32_t>(count);
+  hills.corners = mesh.surface.triangles;
+  for (const Vec3f& p : mesh.surface.positions) {
+    for (size_t c = 0; c < count; ++c) {
+      const size_t column = c % 5, row = c / 5;
+      const float x = p.x - static_cast<float>(column) * 0.2f - 0.1f, y = p.y - static_cast<float>(row) * 0.2f - 0.1f;
+      hills.values.push_back(std::max(0.0f, 1 - 40 * (x * x + y * y)));
+    }
+  }
+  mesh.attributes.assign(1, hills);
+  return mesh;
+}
+
+TEST(FitAttributesTest, DozensOfComponentsAreEachFittedLikeOne) {
+  constexpr size_t kCount = 25;
+  const AttributedMesh original = Hills(96, kCount), mesh = Hills(14, kCount), fitted = Fitted(original, mesh);
+  const auto component = [](AttributedMesh of, size_t c) {
+    MeshAttribute& attribute = of.attributes[0];
+    std::vector<float> values;
+    for (size_t i = c; i < attribute.values.size(); i += kCount) values.push_back(attribute.values[i]);
+    attribute.values = values;
+    attribute.components = 1;
+    return of;
+  };
+  for (const size_t c : {size_t{0}, size_t{7}, size_t{24}}) {
+    const AttributedMesh alone = component(original, c);
+    const double before = Error(alone, component(mesh, c), 0).rms, together = Error(alone, component(fitted, c), 0).rms;
+    const double by_itself = Error(alone, Fitted(alone, component(mesh, c)), 0).rms;
+    EXPECT_LT(together, 0.8 * before) << c;
+    EXPECT_NEAR(together, by_itself, 0.02 * by_itself) << c;
+  }
+}
+
+TEST(FitAttributesTest, WhatIsZeroStaysZero) {
+  const AttributedMesh mesh = Hills(14, 25), fitted = Fitted(Hills(96, 25), mesh);
+  size_t num_zero = 0, num_moved = 0;
+  for (size_t f = 0; f < mesh.surface.triangles.size(); ++f) {
+    for (size_t k = 0; k < 3; ++k) {
+      const auto at = [&](const AttributedMesh& of) { return of.attributes[0].values[25 * size_t{of.attributes[0].corners[f][k]} + 24]; };
+      if (at(mesh) == 0) {
+        EXPECT_EQ(at(fitted), 0.0f);
+        ++num_zero;
+      } else {
+        num_moved += at(fitted) != at(mesh);
+      }
+    }
+  }
+  EXPECT_GT(num_zero, 500u);
+  EXPECT_GT(num_moved, 20u);
 }
 
 }  // namespace
