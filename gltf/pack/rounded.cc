@@ -90,7 +90,7 @@ class FamilyRounder {
                 const std::vector<double>& everywhere, const std::function<bool(const RoundedFamily&)>& is_usable)
       : primitives_(primitives), meter_(meter), is_usable_(is_usable),
         attributes_(RoundedAttributesOf(primitives, meter.attribute_targets(), meter.texels_per_unit(), TargetsByName(meter))),
-        forecast_(primitives_, attributes_), own_attributes_(attributes_.size(), 0.0),
+        forecast_(primitives_, attributes_, meter.status().ok() ? meter.skin() : nullptr), own_attributes_(attributes_.size(), 0.0),
         indices_(attributes_.size()) {
     correction_.attributes.assign(attributes_.size(), 1.0);
     least_attributes_.assign(attributes_.size(), 1);
@@ -146,11 +146,18 @@ class FamilyRounder {
     return std::max(ratio, errors.attributes[index].rms / targets_.everywhere[index]);
   }
 
+  // Whether an attribute is held to what poses show of it.
+  bool IsPosed(size_t a) const { return poses_.has_value() && !attributes_[a].is_shown; }
+
   // What rounding may add to the error of an attribute on these positions, relative to its target and squared.
   double RoomFor(size_t a, const RoundedPositions& positions) const {
-    const RoundedAttribute& attribute = attributes_[a];
-    const double room = (1.0 - Square(own_attributes_[a])) / correction_.attributes[a] - Square(positions.slides[a] / attribute.target);
-    return attribute.is_shown ? room : std::min(room, PoseRoom() - Square(positions.distance / meter_.error()));
+    if (IsPosed(a)) return PoseRoom() - Square(positions.distance / meter_.error());
+    return (1.0 - Square(own_attributes_[a])) / correction_.attributes[a] - Square(positions.slides[a] / attributes_[a].target);
+  }
+
+  // What rounding at a level is expected to add, likewise.
+  double Added(size_t a, int level) {
+    return Square(IsPosed(a) ? forecast_.Posed(a, level) / meter_.error() : forecast_.Rounded(a, level) / attributes_[a].target);
   }
 
   // The coarsest level at which an attribute is expected to meet its target on these positions; beyond kMostLevel: exact.
@@ -158,7 +165,7 @@ class FamilyRounder {
     const RoundedAttribute& attribute = attributes_[a];
     const double room = RoomFor(a, positions);
     if (!(room >= 0.0)) return std::nullopt;
-    const auto meets = [&](int level) { return Square(forecast_.Rounded(a, level) / attribute.target) <= room; };
+    const auto meets = [&](int level) { return Added(a, level) <= room; };
     int low = std::max(attribute.FirstLevel(), least_attributes_[a]) - 1;  // too coarse
     int high = kMostLevel + 1;
     while (high - low > 1) {
@@ -168,8 +175,7 @@ class FamilyRounder {
     return high > kMostLevel ? high : attribute.AtOrAbove(high);
   }
 
-  // What rounding may add to the error of the poses, relative to the target and squared: positions, and weights relative to their
-  // own target.
+  // What rounding may add to the error of the poses, relative to the target and squared: positions and weights.
   double PoseRoom() const { return poses_.has_value() ? (1.0 - Square(own_poses_)) / correction_.poses : kInfinity; }
 
   // No more than any precision that meets the targets takes: the bytes of what has a target, far too coarse. 0 where that is not known, or any number will do.
@@ -182,7 +188,7 @@ class FamilyRounder {
       Primitive coarse{surface.positions.size(), surface.triangles, {{"POSITION", MakeFloatAccessor(surface.positions)}}};
       DracoPrecision precision{positions, {}, 0};
       for (const RoundedAttribute& attribute : attributes_) {
-        const int level = attribute.AtOrAbove(attribute.StartLevel() - kTooCoarse);
+        const int level = attribute.is_shown ? attribute.AtOrAbove(attribute.StartLevel() - kTooCoarse) : attribute.FirstLevel();
         for (const RoundedAttribute::Part& part : attribute.parts) {
           if (part.member != m) continue;
           coarse.attributes.push_back(primitives_[m]->attributes[part.index]);
@@ -562,7 +568,7 @@ class FamilyRounder {
     if (poses_.has_value()) {
       double expected = Square(positions.distance / targets_.distance);
       for (size_t a = 0; a < attributes_.size(); ++a) {
-        if (!attributes_[a].is_shown) expected += Square(trial.rounded[a] / attributes_[a].target);
+        if (IsPosed(a)) expected += Added(a, levels.attributes[a]);
       }
       correction_.poses = corrected(Ratio(errors, *poses_), own_poses_, std::sqrt(expected));
     }

@@ -20,11 +20,40 @@ std::vector<AttributeValue> ValuesOf(const AccessorData& data, bool direction) {
   return values;
 }
 
+// How far surfaces move along their normals, and which of their area comes to look to the other side.
+class Moves {
+ public:
+  // Where nothing has area everything counts, in whichever direction it moves.
+  explicit Moves(bool has_area) : has_area_(has_area) {}
+
+  // moved: where the vertices of the surface go.
+  void Add(const TriangleMesh& surface, const std::vector<Vec3f>& moved) {
+    for (const Triangle& t : surface.triangles) {
+      const Vec3d before = AreaVector(surface.positions, t);
+      const double area = has_area_ ? Norm(before) : 1.0;
+      AttributeValue along[3];
+      for (size_t i = 0; i < 3; ++i) {
+        const Vec3d move = Vec3Cast<double>(moved[t[i]]) - Vec3Cast<double>(surface.positions[t[i]]);
+        along[i] = has_area_ ? AttributeValue{lacerta::Dot(move, Normalized(before)), 0, 0, 0} : AttributeValue{move.x, move.y, move.z, 0};
+      }
+      squares_ += area * MeanSquare(along[0], along[1], along[2]);
+      area_ += area;
+      if (lacerta::Dot(before, AreaVector(moved, t)) < 0.0) flipped_ += area;
+    }
+  }
+
+  double Distance() const { return area_ > 0.0 ? std::sqrt(squares_ / area_) : 0.0; }  // RMS
+  double Flipped() const { return has_area_ && area_ > 0.0 ? flipped_ / area_ : 0.0; }
+
+ private:
+  const bool has_area_;
+  double squares_ = 0.0, area_ = 0.0, flipped_ = 0.0;
+};
+
 }  // namespace
 
-RoundingForecast::RoundingForecast(const std::vector<const Primitive*>& primitives,
-                                   const std::vector<RoundedAttribute>& attributes)
-    : primitives_(primitives), attributes_(attributes) {
+RoundingForecast::RoundingForecast(const std::vector<const Primitive*>& primitives, const std::vector<RoundedAttribute>& attributes, const Skin* skin)
+    : primitives_(primitives), attributes_(attributes), skin_(skin) {
   Vec3f min, max;
   bool is_first = true;
   for (const Primitive* primitive : primitives) {
@@ -58,23 +87,10 @@ const RoundedPositions& RoundingForecast::Positions(int level) {
   result.lattice = LatticeAt(level);
   result.moved = descent_->On(result.lattice);
   const std::vector<std::vector<Vec3f>>& moved = result.moved;
-  double squares = 0.0, area_sum = 0.0, flipped = 0.0;
-  for (size_t m = 0; m < surfaces_.size(); ++m) {
-    for (const Triangle& t : surfaces_[m].triangles) {
-      const Vec3d before = AreaVector(surfaces_[m].positions, t);
-      const double area = has_area_ ? Norm(before) : 1.0;
-      AttributeValue along[3];
-      for (size_t i = 0; i < 3; ++i) {
-        const Vec3d move = Vec3Cast<double>(moved[m][t[i]]) - Vec3Cast<double>(surfaces_[m].positions[t[i]]);
-        along[i] = has_area_ ? AttributeValue{lacerta::Dot(move, Normalized(before)), 0, 0, 0} : AttributeValue{move.x, move.y, move.z, 0};
-      }
-      squares += area * MeanSquare(along[0], along[1], along[2]);
-      area_sum += area;
-      if (lacerta::Dot(before, AreaVector(moved[m], t)) < 0.0) flipped += area;
-    }
-  }
-  result.distance = area_sum > 0.0 ? std::sqrt(squares / area_sum) : 0.0;
-  result.flipped = has_area_ ? flipped / area_sum : 0.0;
+  Moves moves(has_area_);
+  for (size_t m = 0; m < surfaces_.size(); ++m) moves.Add(surfaces_[m], moved[m]);
+  result.distance = moves.Distance();
+  result.flipped = moves.Flipped();
   result.slides.assign(attributes_.size(), 0.0);
   ForEachBranch(attributes_.size(), [&](size_t a) {
     if (!has_area_ || !attributes_[a].is_shown) return;
@@ -103,6 +119,36 @@ const RoundingForecast::Errors& RoundingForecast::ErrorsOf(size_t index, int lev
     rounded.push_back(attribute.RoundedAt(values.back(), part, level));
   }
   return known->second = ErrorsOf(index, values, rounded);
+}
+
+double RoundingForecast::Posed(size_t index, int level) {
+  const auto [known, is_new] = posed_.emplace(std::make_pair(index, level), 0.0);
+  if (!is_new || level > kMostLevel || skin_ == nullptr) return known->second;
+  const RoundedAttribute& attribute = attributes_[index];
+  std::vector<Moves> moves(skin_->poses.size(), Moves(has_area_));
+  for (const RoundedAttribute::Part& part : attribute.parts) {
+    const Primitive& exact = *primitives_[part.member];
+    Primitive rounded{exact.num_vertices, {}, {}};
+    for (size_t i = 0; i < exact.attributes.size(); ++i) {
+      const Attribute& own = exact.attributes[i];
+      if (IsSkinAttribute(own.name)) rounded.attributes.push_back({own.name, i == part.index ? attribute.RoundedAt(own.data, part, level) : own.data});
+    }
+    const StatusOr<VertexInfluences> before = ReadInfluences(exact, skin_->num_joints), after = ReadInfluences(rounded, skin_->num_joints);
+    if (!before.ok() || !after.ok()) continue;
+    const TriangleMesh& rest = surfaces_[part.member];
+    for (size_t pose = 0; pose < moves.size(); ++pose) {
+      TriangleMesh surface{{}, rest.triangles};
+      std::vector<Vec3f> moved;
+      for (size_t v = 0; v < rest.positions.size(); ++v) {
+        const auto position = Vec3Cast<double>(rest.positions[v]);
+        surface.positions.push_back(Vec3Cast<float>(skin_->Posed(pose, position, before.value().Of(v))));
+        moved.push_back(Vec3Cast<float>(skin_->Posed(pose, position, after.value().Of(v))));
+      }
+      moves[pose].Add(surface, moved);
+    }
+  }
+  for (const Moves& in_pose : moves) known->second = std::max(known->second, in_pose.Distance());
+  return known->second;
 }
 
 RoundingForecast::Errors RoundingForecast::ErrorsOf(size_t index, const std::vector<AccessorData>& values, const std::vector<AccessorData>& rounded) const {

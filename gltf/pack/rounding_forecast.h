@@ -12,6 +12,7 @@
 #include "lacerta/mesh.h"
 #include "pack/position_descent.h"
 #include "pack/rounded_attributes.h"
+#include "pack/skin.h"
 
 namespace lacerta {
 
@@ -26,8 +27,8 @@ struct RoundedPositions {
 
 class RoundingForecast {
  public:
-  // Refers to its arguments.
-  RoundingForecast(const std::vector<const Primitive*>& primitives, const std::vector<RoundedAttribute>& attributes);
+  // Refers to its arguments. skin: of the primitives, or null where they have none that is known; all have joints and weights then.
+  RoundingForecast(const std::vector<const Primitive*>& primitives, const std::vector<RoundedAttribute>& attributes, const Skin* skin = nullptr);
 
   // Over the box of all positions in steps of its longest side / 2^(level / kLevelsPerBit); level >= 1.
   Lattice LatticeAt(int level) const;
@@ -46,6 +47,9 @@ class RoundingForecast {
   // At a level, of the triangle where it is most.
   double MostRounded(size_t attribute, int level) { return ErrorsOf(attribute, level).most; }
 
+  // With a skin: RMS over the surface of how far weights rounded at a level move it along its normals, in the pose where that is most. 0 beyond kMostLevel.
+  double Posed(size_t attribute, int level);
+
   // The level at which a step moves positions by about `error`.
   int StartLevel(double error) const;
 
@@ -59,6 +63,7 @@ class RoundingForecast {
 
   const std::vector<const Primitive*>& primitives_;
   const std::vector<RoundedAttribute>& attributes_;
+  const Skin* const skin_;
   std::vector<TriangleMesh> surfaces_;  // of the primitives
   std::optional<PositionDescent> descent_;
   Lattice box_;
@@ -66,6 +71,7 @@ class RoundingForecast {
   std::map<int, RoundedPositions> positions_;
   std::map<std::pair<size_t, int>, std::vector<AccessorData>> fitted_;
   std::map<std::pair<size_t, int>, Errors> rounded_;
+  std::map<std::pair<size_t, int>, double> posed_;
 };
 
 }  // namespace lacerta

@@ -94,17 +94,16 @@ StatusOr<std::vector<Primitive>> Split(const AttributedMesh& mesh, const FamilyM
   return primitives;
 }
 
-// The search compares poses point by point, which tells more than how far the surfaces are apart: how much more is measured, and
-// the search run again with the bound that follows.
+// The search compares poses point by point, which mostly tells more than how far the surfaces are apart. That is measured, and where it is too much after all
+// the search is run again with the bound that follows.
 StatusOr<SimplifiedFamily> SimplifyInPoses(const FamilyMeter& meter, ErrorTargets targets) {
-  constexpr double kLeastGain = 1.05, kMostGain = 2.5, kMargin = 0.97;
+  constexpr double kLeast = 0.4, kMargin = 0.97;
   constexpr int kMostTries = 2;
   LACERTA_ASSIGN_OR_RETURN(const SkinTransfer transfer, SkinTransfer::Create(meter));
   SimplifyToErrorsOptions options;
   options.finish = [&](AttributedMesh* mesh) { transfer.Transfer(mesh); };
   const size_t poses = *meter.IndexOf(kPosesName);
   const double wanted = targets.attributes[poses];
-  SimplifiedFamily best;
   for (int i = 0; i < kMostTries; ++i) {
     LACERTA_ASSIGN_OR_RETURN(SimplifiedSurface simplified, SimplifyToErrors(meter.simplifiable(), meter.meter(), targets, options));
     if (!simplified.meets_targets) break;
@@ -112,20 +111,13 @@ StatusOr<SimplifiedFamily> SimplifyInPoses(const FamilyMeter& meter, ErrorTarget
     LACERTA_ASSIGN_OR_RETURN(std::vector<Primitive> primitives, Split(simplified.mesh, meter, by_vertex));
     LACERTA_ASSIGN_OR_RETURN(const double worst, meter.WorstPose(PointersTo(primitives)));
     AttributeError& error = simplified.errors.attributes[poses];
-    const double gain = std::clamp(kMargin * wanted / worst, 1.0 / kMostGain, kMostGain);
-    const bool is_limiting = error.rms > targets.attributes[poses] / kLeastGain;
     error.rms = error.rms_99 = worst;
-    if (worst <= wanted) {
-      best = {std::move(primitives), std::move(simplified.errors)};
-      if (gain < kLeastGain || !is_limiting) break;
-    } else if (!best.primitives.empty()) {
-      break;
-    }
-    targets.attributes[poses] *= gain;
-    targets.everywhere[poses] *= gain;
+    if (worst <= wanted) return SimplifiedFamily{std::move(primitives), std::move(simplified.errors)};
+    const double finer = std::max(kMargin * wanted / worst, kLeast);
+    targets.attributes[poses] *= finer;
+    targets.everywhere[poses] *= finer;
   }
-  if (best.primitives.empty()) return Unsupported("no simplified surface is close enough in all poses of its skin");
-  return best;
+  return Unsupported("no simplified surface is close enough in all poses of its skin");
 }
 
 // share: of every target; what rounding adds comes on top in squares.

@@ -35,7 +35,8 @@ struct AttributeTargets {
   // Of each component of colors as screens show them (sRGB): 1.5 of 255 steps are what a good JPEG is off. Colors are stored as linear light: they
   // may be off by what comes to that in the mean over the surface, less where it is dark, but never less than integers of 8 bits are.
   double color = 1.5 / 255;
-  // Of each component, as 8-bit integers do it, the coarsest that core glTF has: 1 / (255 sqrt(12)).
+  // Of each component of weights that no skin uses, as 8-bit integers do it, the coarsest that core glTF has: 1 / (255 sqrt(12)). Others are held to what
+  // poses show.
   double weight = 0.00113;
   // Of each component of application attributes (`_X`) of floats that are not all whole numbers, relative to the range of the values in
   // meshes that touch. Whole numbers may name something: they stay exact, as all do at 0, and their meshes keep their vertices.

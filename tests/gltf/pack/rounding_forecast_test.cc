@@ -109,6 +109,57 @@ TEST(RoundingForecast, PositionsAndWhatSlidesOnThem) {
   EXPECT_EQ(forecast.StartLevel(0.0), kMostLevel);
 }
 
+// With two joints, of which the second takes over along x and goes up by `shift` in one of two poses.
+struct Skinned {
+  Primitive primitive = Textured();
+  Skin skin;
+
+  explicit Skinned(double shift) {
+    std::vector<float> weights;
+    AccessorData joints;
+    joints.type = ComponentType::kUint8;
+    joints.components = 4;
+    joints.count = primitive.num_vertices;
+    for (const Vec3f& p : Surface(primitive).positions) {
+      const float second = 0.5f + 0.45f * p.x;
+      weights.insert(weights.end(), {1 - second, second, 0, 0});
+      joints.bytes.insert(joints.bytes.end(), {0, 1, 0, 0});
+    }
+    primitive.attributes.push_back({"JOINTS_0", joints});
+    primitive.attributes.push_back({"WEIGHTS_0", MakeFloatAccessor(weights, 4)});
+    skin.num_joints = 2;
+    skin.poses.assign(2, std::vector<Transform>(2, kIdentity));
+    skin.poses[1][1][11] = shift;
+  }
+};
+
+TEST(RoundingForecast, WeightsByWhatPosesShow) {
+  constexpr int kLevel = 4 * kLevelsPerBit;
+  std::vector<double> per_shift;
+  for (const double shift : {0.5, 1.0}) {
+    const Skinned skinned(shift);
+    const std::vector<const Primitive*> primitives = {&skinned.primitive};
+    const auto attributes = RoundedAttributesOf(primitives, {}, [](size_t, uint64_t) { return 1024.0; });
+    ASSERT_EQ(attributes.back().name, "WEIGHTS_0");
+    const size_t weights = attributes.size() - 1;
+    RoundingForecast forecast(primitives, attributes, &skinned.skin);
+    Primitive rounded = skinned.primitive;
+    rounded.attributes.back().data = attributes[weights].RoundedAt(rounded.attributes.back().data, attributes[weights].parts[0], kLevel);
+    const TriangleMesh exact = PosedSurface(primitives, skinned.skin, 1).value(), moved = PosedSurface({&rounded}, skinned.skin, 1).value();
+    const double measured = MeasureSurfaceDistance(exact, moved).value().Rms();
+    EXPECT_LE(forecast.Posed(weights, kLevel), 1.3 * measured);
+    EXPECT_GE(forecast.Posed(weights, kLevel), 0.9 * measured);
+    per_shift.push_back(forecast.Posed(weights, kLevel) / shift);
+    EXPECT_NEAR(forecast.Posed(weights, kLevel + kLevelsPerBit) / shift, 0.5 * per_shift.back(), 0.15 * per_shift.back());
+    EXPECT_EQ(forecast.Posed(weights, kMostLevel + 1), 0.0);
+  }
+  EXPECT_NEAR(per_shift[0], per_shift[1], 0.05 * per_shift[0]);
+  const Skinned still(0.0);
+  const std::vector<const Primitive*> primitives = {&still.primitive};
+  const auto attributes = RoundedAttributesOf(primitives, {}, [](size_t, uint64_t) { return 1024.0; });
+  EXPECT_LT(RoundingForecast(primitives, attributes, &still.skin).Posed(attributes.size() - 1, kLevel), 1e-6);  // joints that nothing moves apart
+}
+
 TEST(RoundingForecast, SurfacesWithoutArea) {
   Primitive primitive = Textured();
   primitive.triangles = {{0, 0, 1}};

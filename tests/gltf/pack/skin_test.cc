@@ -181,7 +181,7 @@ shapes::SkinnedSoup WithNoisyWedges(const shapes::SkinnedSoup& skinned) {
 
 TEST(Skin, NoiseBetweenWedgesIsNoSeam) {
   uint64_t bytes = 0, wanted = 0;  // of more than one bend: what share of the error goes to weights is a matter of chance
-  for (const double bend : {45.0, 60.0}) {
+  for (const double bend : {30.0, 45.0, 60.0}) {
     const Bytes noisy = SkinnedCylinderAsset(WithNoisyWedges(shapes::SkinnedCylinder(48, 52)), bend);
     const PackResult packed = Pack(noisy);
     bytes += packed.report.primitives[0].bytes_after;
