@@ -334,8 +334,7 @@ class FamilyRounder {
     });
   }
 
-  // Whether what is rounded more coarsely than `best` is expected to meet the targets, from what was measured of that. Poses are left to the
-  // measure: forecasts of them say too little.
+  // Whether what is rounded more coarsely than `best` is expected to meet the targets, from what was measured of that.
   bool MayMeet(const Levels& levels, const Trial& best) {
     constexpr double kMost = 1.05;  // of a squared target: forecasts err
     const RoundedPositions &positions = forecast_.Positions(levels.positions), &before = forecast_.Positions(best.levels.positions);
@@ -347,7 +346,12 @@ class FamilyRounder {
                            Square(positions.slides[a]) - Square(before.slides[a])) / Square(attributes_[a].target);
       if (Square(Ratio(best.errors, *indices_[a])) + correction_.attributes[a] * more > kMost) return false;
     }
-    return true;
+    if (!poses_.has_value()) return true;
+    double more = farther;
+    for (size_t a = 0; a < attributes_.size(); ++a) {
+      if (IsPosed(a)) more += Added(a, levels.attributes[a]) - Added(a, best.levels.attributes[a]);
+    }
+    return Square(Ratio(best.errors, *poses_)) + correction_.poses * more <= kMost;
   }
 
   // With positions (k = 0) or the attribute k - 1 so many levels coarser, or a bit where it comes in whole ones; nothing where there is no such level or no
