@@ -217,6 +217,16 @@ Status CheckComplete(const GltfDocument& document) {
   return Status();
 }
 
+// Which primitives have no levels, and why the first of them has none; empty where all have.
+std::string DescribeMissingLevels(const std::vector<PrimitiveReport>& reports) {
+  const auto has_none = [](const PrimitiveReport& report) { return report.storage != PrimitiveStorage::kProgressive; };
+  const auto first = std::find_if(reports.begin(), reports.end(), has_none);
+  if (first == reports.end()) return "";
+  const auto count = std::count_if(first, reports.end(), has_none);
+  return "no levels, though always wanted, for " + std::to_string(count) + " of " + std::to_string(reports.size()) + " primitives; mesh " +
+         std::to_string(first->mesh) + ", primitive " + std::to_string(first->primitive) + ": " + first->reason;
+}
+
 // The document with the geometry that the plans have for it.
 StatusOr<PackResult> StorePlans(GltfDocument document, const std::vector<PrimitivePlan>& plans, const PackOptions& options) {
   std::set<uint64_t> unused_views = DracoViews(document);
@@ -240,6 +250,8 @@ StatusOr<PackResult> StorePlans(GltfDocument document, const std::vector<Primiti
   LACERTA_RETURN_IF_ERROR(MergeBuffers(&document));
   if (!result.external.empty()) ReferToExternal(result.external, options.external_uri, &document);
   if (plans.empty()) result.report.notes.push_back("the asset holds no mesh");
+  const bool always_levels = options.encode.levels == LevelChoice::kAlways;
+  if (const std::string missing = DescribeMissingLevels(result.report.primitives); always_levels && !missing.empty()) result.report.notes.push_back(missing);
   result.glb = FormatGlb(document);
   return result;
 }

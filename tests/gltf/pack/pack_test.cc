@@ -23,6 +23,7 @@ using ::testing::AllOf;
 using testing::AssetBuilder;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using testing::JsonOf;
 using ::testing::Not;
 using testing::WavySphere;
@@ -51,6 +52,25 @@ Bytes MixedAsset() {
   builder.AddMesh("smooth", Json::array({with_normals}));
   builder.AddMesh("pair", Json::array({builder.Primitive(WavySphere(13, 22, {0, -3, 0})), builder.Primitive(WavySphere(13, 22, {0, 3, 0}))}));
   return builder.Glb();
+}
+
+TEST(Pack, LevelsThatAreAlwaysWantedAndMissingAreTold) {
+  const PackOptions always = Options(Fallback::kDraco);
+  EXPECT_THAT(PackGltf(MixedAsset(), always).value().report.notes, IsEmpty());
+  AssetBuilder builder;
+  builder.AddMesh("ball", Json::array({builder.Primitive(WavySphere(13, 22))}));
+  Json lines = builder.Primitive(WavySphere(13, 22, {3, 0, 0}));
+  lines["mode"] = 1;
+  builder.AddMesh("lines", Json::array({lines}));
+  const Bytes asset = builder.Glb();
+  const PackResult packed = PackGltf(asset, always).value();
+  ASSERT_EQ(packed.report.primitives.size(), 2u);
+  ASSERT_EQ(packed.report.notes.size(), 1u);
+  EXPECT_FALSE(packed.report.primitives[1].reason.empty());
+  EXPECT_THAT(packed.report.notes[0], AllOf(HasSubstr("1 of 2 primitives"), HasSubstr("mesh 1, primitive 0: " + packed.report.primitives[1].reason)));
+  PackOptions where_they_pay = always;
+  where_they_pay.encode.levels = LevelChoice::kWhereTheyPay;
+  EXPECT_THAT(PackGltf(asset, where_they_pay).value().report.notes, IsEmpty());
 }
 
 TEST(Pack, DracoFallbackSharesTheBytesOfTheBase) {
