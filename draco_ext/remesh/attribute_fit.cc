@@ -85,27 +85,20 @@ class ValueFit {
   // How many components are solved together from `first` on.
   size_t CountFrom(size_t first) const { return std::min(kColumns, attribute_.components - first); }
 
-  // Some components of the value that is there, from `first` on.
-  Columns Here(const AttributeSamples::Sample& sample, size_t first) const {
+  // Some components of an interpolated value, from `first` on.
+  Columns Interpolated(const MeshAttribute& attribute, uint32_t face, const std::array<float, 3>& weights, size_t first) const {
     const size_t count = CountFrom(first);
     Columns value{};
     for (size_t k = 0; k < 3; ++k) {
-      const float* row = ValueOf(attribute_.corners[sample.face][k]) + first;
-      for (size_t c = 0; c < count; ++c) value[c] += static_cast<double>(sample.weights[k]) * static_cast<double>(row[c]);
+      const float* row = &attribute.values[size_t{attribute.corners[face][k]} * attribute.components + first];
+      for (size_t c = 0; c < count; ++c) value[c] += static_cast<double>(weights[k]) * static_cast<double>(row[c]);
     }
     return value;
   }
 
-  // And of the original.
-  Columns There(const GroupSurface::Point& point, size_t first) const {
-    const size_t count = CountFrom(first);
-    Columns value{};
-    for (size_t k = 0; k < 3; ++k) {
-      const float* row = &wanted_.values[size_t{wanted_.corners[point.face][k]} * wanted_.components + first];
-      for (size_t c = 0; c < count; ++c) value[c] += static_cast<double>(point.barycentric[k]) * static_cast<double>(row[c]);
-    }
-    return value;
-  }
+  // Of the value that is there, and of the original.
+  Columns Here(const AttributeSamples::Sample& sample, size_t first) const { return Interpolated(attribute_, sample.face, sample.weights, first); }
+  Columns There(const GroupSurface::Point& point, size_t first) const { return Interpolated(wanted_, point.face, point.barycentric, first); }
 
   // The squared difference of the value that is there to that of the original.
   double ErrorAt(const AttributeSamples::Sample& sample, const GroupSurface::Point& point) const {

@@ -128,23 +128,12 @@ double RoundingForecast::Posed(size_t index, int level) {
   std::vector<Moves> moves(skin_->poses.size(), Moves(has_area_));
   for (const RoundedAttribute::Part& part : attribute.parts) {
     const Primitive& exact = *primitives_[part.member];
-    Primitive rounded{exact.num_vertices, {}, {}};
-    for (size_t i = 0; i < exact.attributes.size(); ++i) {
-      const Attribute& own = exact.attributes[i];
-      if (IsSkinAttribute(own.name)) rounded.attributes.push_back({own.name, i == part.index ? attribute.RoundedAt(own.data, part, level) : own.data});
-    }
-    const StatusOr<VertexInfluences> before = ReadInfluences(exact, skin_->num_joints), after = ReadInfluences(rounded, skin_->num_joints);
-    if (!before.ok() || !after.ok()) continue;
-    const TriangleMesh& rest = surfaces_[part.member];
+    Primitive rounded = exact;
+    AccessorData& weights = rounded.attributes[part.index].data;
+    weights = attribute.RoundedAt(weights, part, level);
     for (size_t pose = 0; pose < moves.size(); ++pose) {
-      TriangleMesh surface{{}, rest.triangles};
-      std::vector<Vec3f> moved;
-      for (size_t v = 0; v < rest.positions.size(); ++v) {
-        const auto position = Vec3Cast<double>(rest.positions[v]);
-        surface.positions.push_back(Vec3Cast<float>(skin_->Posed(pose, position, before.value().Of(v))));
-        moved.push_back(Vec3Cast<float>(skin_->Posed(pose, position, after.value().Of(v))));
-      }
-      moves[pose].Add(surface, moved);
+      const StatusOr<TriangleMesh> before = PosedSurface({&exact}, *skin_, pose), after = PosedSurface({&rounded}, *skin_, pose);
+      if (before.ok() && after.ok()) moves[pose].Add(before.value(), after.value().positions);
     }
   }
   for (const Moves& in_pose : moves) known->second = std::max(known->second, in_pose.Distance());
