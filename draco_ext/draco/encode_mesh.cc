@@ -199,6 +199,7 @@ StatusOr<ChosenStream> CodeRemeshed(ProxiedInput* input, const SurfaceDistanceMe
                                *is_simpler = takes_fewer.ok() && takes_fewer.value();
                                return *is_simpler;
                              },
+                             [&](double bytes) { return (*simpler)->MayTakeFewerThan(bytes); },
                              [&](double bytes) { (*simpler)->PrepareBeside(bytes); }};
   std::vector<RefinableSurface> simplifications;
   for (const CollapseHistory& history : histories) simplifications.push_back({surface, history, still.mesh});

@@ -53,8 +53,9 @@ struct TriedBase {
 constexpr size_t kMost = 4;
 // dB: a remesh that is nearer to the target than that costs bytes and gets one level more: before it is taken to the target, and to be scored.
 constexpr double kComfort = 12, kLittleComfort = 6;
-// What the bytes of the stream in the end are at least: against those of the best score so far, or of all, and for a vertex of the base.
-constexpr double kLeastShare = 0.45, kLeastShareAtEnd = 0.85, kFewestBytesPerVertex = 1.0;
+// What the bytes of the stream in the end are at least: for a vertex of the base, against those of the best score of all, and against those of the
+// best so far, where neighbors on both sides are no better, where only larger bases are missing, and where smaller ones are.
+constexpr double kFewestBytesPerVertex = 1.8, kLeastShareAtEnd = 0.85, kLeastShareBetween = 0.8, kLeastShareOfLargest = 0.7, kLeastShare = 0.45;
 // What a PSNR costs, about: ln(bytes) per dB.
 constexpr double kLogBytesPerDecibel = 0.11;
 
@@ -78,9 +79,10 @@ class Ladder {
   }
 
   // Scores the rungs around the usual one and goes on until one on either side of the best is known to be much worse, or two to be
-  // worse: one alone may be a fluke of its simplification. Other simplifications are looked at where the best one is. Fails where it is outdone
-  // on the way.
-  StatusOr<BestBases> FindBest(const std::function<void(double, const char*)>& progress, const std::function<bool(double)>& is_outdone) {
+  // worse: one alone may be a fluke of its simplification. Other simplifications are looked at where the best one is. Fails where the rival, if
+  // there is one, outdoes it on the way.
+  StatusOr<BestBases> FindBest(const std::function<void(double, const char*)>& progress, const RivalStream* rival) {
+    const auto is_outdone = [&](double bytes) { return rival != nullptr && rival->takes_fewer_than(bytes); };
     const int first = UsualRung();
     if (is_outdone(LeastBytesFrom(std::max(first - kStride, first_.front())))) return Outdone();
     Visit(effort_.enough_bases == 1 ? std::vector<BaseChoice>{{0, first}} : std::vector<BaseChoice>{{0, first - kStride}, {0, first}, {0, first + kStride}}, {});
@@ -98,7 +100,7 @@ class Ladder {
         LACERTA_ASSIGN_OR_RETURN(std::vector<BaseChoice> bases, Promising(ranking));
         return BestBases{std::move(bases), target_.is_rate ? target_.bytes : std::exp(tried_[best].score)};
       }
-      if (is_outdone(is_scored ? kLeastShare * std::exp(tried_[best].score) : LeastBytesFrom(HighestRung() + kStride))) return Outdone();
+      if (is_outdone(is_scored ? LeastShare(best) * std::exp(tried_.at(best).score) : LeastBytesFrom(HighestRung() + kStride))) return Outdone();
       Visit(next, next.size() == 1 ? likely : std::vector<BaseChoice>());
     }
   }
@@ -169,6 +171,12 @@ class Ladder {
 
   // Of streams with a base of that rung or a larger one. Vertices of bases usually take three bytes and more.
   double LeastBytesFrom(int rung) const { return kFewestBytesPerVertex * RungSize(rung); }
+
+  // Of the bytes of the best so far those that the stream takes in the end.
+  double LeastShare(const BaseChoice& best) const {
+    if (IsMissing(best.At(best.rung - kStride))) return kLeastShare;
+    return IsMissing(best.At(best.rung + kStride)) ? kLeastShareOfLargest : kLeastShareBetween;
+  }
 
   // What a share of the bytes is in units of scores.
   double ScoreOfShare(double share) const { return target_.is_rate ? share / kLogBytesPerDecibel : share; }
@@ -383,8 +391,8 @@ StatusOr<ChosenStream> CodeAtTarget(const std::vector<RefinableSurface>& simplif
                                     EncodeMode mode, const std::function<void(double, const char*)>& progress, const SearchEffort& effort,
                                     const RivalStream* rival) {
   Ladder ladder(simplifications, meter, target, mode, effort);
-  const auto rival_takes_fewer_than = [&](double bytes) { return rival != nullptr && !target.is_rate && rival->takes_fewer_than(bytes); };
-  LACERTA_ASSIGN_OR_RETURN(const BestBases bases, ladder.FindBest(progress, rival_takes_fewer_than));
+  const RivalStream* const outdoing = target.is_rate ? nullptr : rival;  // at a rate all take as many bytes
+  LACERTA_ASSIGN_OR_RETURN(const BestBases bases, ladder.FindBest(progress, outdoing));
   if (progress) progress(0.8, "meeting the target");
   StatusOr<ChosenStream> best = InternalError("no base was taken to the target");
   const auto num_input = static_cast<double>(simplifications.front().surface.mesh().positions.size());
@@ -409,12 +417,14 @@ StatusOr<ChosenStream> CodeAtTarget(const std::vector<RefinableSurface>& simplif
     }
     if (effort.every_size) meet(ladder.FindHalfway());
   };
-  // Both take a while, mostly on one thread each: they are done at once, in vain for the bases where these are outdone.
+  // Both take a while, mostly on one thread each: they are done at once, in vain for the bases where these are outdone, unless that is likely.
   const bool is_in_reach = std::isfinite(bases.bytes);
+  const double least_bytes = kLeastShareAtEnd * bases.bytes;
+  const bool may_be_outdone = outdoing != nullptr && (!is_in_reach || outdoing->may_take_fewer_than(least_bytes));
   std::atomic<bool> is_outdone{false};
-  ForEachCandidate(is_in_reach ? num_input : kOneCandidateAtATime, 2, [&](size_t i) {
+  ForEachCandidate(may_be_outdone ? kOneCandidateAtATime : num_input, 2, [&](size_t i) {
     if (i == 0) {
-      is_outdone = rival_takes_fewer_than(kLeastShareAtEnd * bases.bytes);
+      is_outdone = outdoing != nullptr && outdoing->takes_fewer_than(least_bytes);
       if (!is_outdone && rival != nullptr && is_in_reach) rival->prepare_beside(bases.bytes);
     } else if (!is_outdone) {
       meet_best();

@@ -46,6 +46,8 @@ bool IsBetter(const Outcome& a, const Outcome& b, const ResolvedTarget& target);
 struct RivalStream {
   // Whether it meets the PSNR in fewer than so many bytes; asked at a PSNR alone, as more becomes known, infinity where no base reaches the target.
   std::function<bool(double bytes)> takes_fewer_than;
+  // Whether that is likely, by what was seen of it so far: then nothing else is begun before it is known.
+  std::function<bool(double bytes)> may_take_fewer_than;
   // To be found now, if it may be better than one of about so many bytes: others wait for nothing else.
   std::function<void(double bytes)> prepare_beside;
 };

@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kMostRegular = 4;  // times the triangles of the best simplified mesh: the input may take fewer bytes as it is
 constexpr double kLevelsWorthBytes = 0.05;  // as a share, of those of a stream that has some
+constexpr double kFewestBytesPerTriangle = 0.85;
 constexpr uint64_t kSizeSamples = 4000;  // that tell how far a mesh may be simplified
 
 double Square(double x) { return x * x; }
@@ -29,7 +30,6 @@ double Square(double x) { return x * x; }
 // Whether no simplified mesh at the PSNR takes fewer than `bytes`, as one look tells at a mesh that is larger than any that does. Never
 // certain at a rate, nor where the input may be so regular that it takes hardly any bytes.
 bool IsHopeless(const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, double bytes) {
-  constexpr double kFewestBytesPerTriangle = 0.85;
   constexpr double kMostGain = 2;  // of the fit, in squared distance
   const double triangles = std::max(bytes / kFewestBytesPerTriangle, static_cast<double>(sequence.fewest_triangles()));
   if (target.is_rate || kMostRegular * triangles > static_cast<double>(sequence.num_input_triangles())) return false;
@@ -75,10 +75,16 @@ class ZeroLevelSearch {
     return !IsOver(kHopelessAtBest * most_bytes);
   }
 
-  // Of the stream of the best size, about; infinite where that does not meet the PSNR.
+  // Whether the best size so far does not tell otherwise. At a PSNR.
+  bool MayTakeFewerThan(double bytes) const {
+    if (tried_.empty()) return false;  // what was looked at failed
+    return BestBytes() < kHopelessAtBest * bytes;
+  }
+
+  // Of the stream of the best size, about; the fewest that so many triangles take where that seems to miss the PSNR.
   double BestBytes() const {
     const Trial& best = tried_.at(best_);
-    return best.meets ? static_cast<double>(best.bytes) : std::numeric_limits<double>::infinity();
+    return best.meets ? static_cast<double>(best.bytes) : kFewestBytesPerTriangle * static_cast<double>(best.num_triangles);
   }
 
   // The stream of the best size, or where that misses the PSNR after all, of a larger one that meets it, as long as it takes fewer than
@@ -409,6 +415,8 @@ StatusOr<bool> SimplerStream::Find(double most_bytes) {
   return search_->FindSize(most_bytes);
 }
 
+bool SimplerStream::MayTakeFewerThan(double bytes) const { return search_ && search_->MayTakeFewerThan(bytes); }
+
 StatusOr<bool> SimplerStream::TakesFewerThan(double bytes) {
   const auto does = [&](const ZeroLevelStream& stream) { return stream.meets_target && static_cast<double>(stream.stream.size()) < bytes; };
   if (stream_) return does(*stream_);
@@ -416,8 +424,9 @@ StatusOr<bool> SimplerStream::TakesFewerThan(double bytes) {
   LACERTA_ASSIGN_OR_RETURN(const bool may_be, Find(bytes));
   if (!may_be || search_->BestBytes() >= bytes) return false;
   LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, search_->Finish(bytes));
-  if (does(stream)) stream_ = std::move(stream);
-  return stream_.has_value();
+  if (!stream.meets_target) return false;  // it may yet, in more bytes
+  stream_ = std::move(stream);
+  return does(*stream_);
 }
 
 Status SimplerStream::Look(double most_bytes) {

@@ -47,6 +47,8 @@ class SimplerStream {
 
   // Whether a stream meets the PSNR in fewer than so many bytes. Never at a rate.
   StatusOr<bool> TakesFewerThan(double bytes);
+  // Whether that is likely, by what TakesFewerThan has seen so far.
+  bool MayTakeFewerThan(double bytes) const;
   // Looks for the stream already, if it may beat one of about so many bytes: IsBetterThan is quick then.
   void PrepareBeside(double bytes);
   // Whether a stream clearly beats `coded`, which has levels to show for its bytes: it meets the target in 5 % fewer of them, or with a

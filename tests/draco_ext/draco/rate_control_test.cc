@@ -194,13 +194,14 @@ struct NotingRival {
   double bytes;
   std::vector<double> asked = {}, prepared = {};
 
-  StatusOr<ChosenStream> Code(const Coder& coder, const ResolvedTarget& target) {
+  StatusOr<ChosenStream> Code(const Coder& coder, const ResolvedTarget& target, Effort effort = Effort::kFast) {
     const RivalStream rival = {[&](double most) {
                                  asked.push_back(most);
                                  return bytes < most;
                                },
+                               [&](double most) { return bytes < most; },
                                [&](double beside) { prepared.push_back(beside); }};
-    return CodeAtTarget({{coder.surface, coder.history, {}}}, coder.meter, target, EncodeMode::kDefault, {}, EffortOf(Effort::kFast), &rival);
+    return CodeAtTarget({{coder.surface, coder.history, {}}}, coder.meter, target, EncodeMode::kDefault, {}, EffortOf(effort), &rival);
   }
 };
 
@@ -217,6 +218,19 @@ TEST(CodeAtTargetTest, GivesUpWhereItIsOutdone) {
   NotingRival small{0.5 * size};
   EXPECT_EQ(small.Code(coder, psnr).status().code(), StatusCode::kUnsupported);
   EXPECT_TRUE(small.prepared.empty());
+}
+
+TEST(CodeAtTargetTest, TheWalkOverBasesEndsWhereTheBestCanHardlyGetAsSmallAsTheRival) {
+  const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
+  const ResolvedTarget psnr{false, 0, 54};
+  NotingRival large{1e9};
+  const auto size = static_cast<double>(large.Code(coder, psnr, Effort::kNormal).value().measured.stream.size());
+  ASSERT_GE(large.asked.size(), 3u);
+  for (const double least : large.asked) EXPECT_LT(least, size);
+  NotingRival small{0.7 * size}, near{0.98 * size};
+  EXPECT_EQ(small.Code(coder, psnr, Effort::kNormal).status().code(), StatusCode::kUnsupported);
+  EXPECT_LT(small.asked.size(), large.asked.size());
+  EXPECT_TRUE(near.Code(coder, psnr, Effort::kNormal).ok());
 }
 
 TEST(CodeAtTargetTest, ARivalIsOnlyPreparedAtARate) {

@@ -155,7 +155,10 @@ TEST_F(ZeroLevelSearchTest, TellsBeforeThereIsAStreamWhetherItTakesFewerBytes) {
   const auto bytes = static_cast<double>(least.stream.size());
   const SimplificationSequence sequence(mesh_);
   SimplerStream simpler(mesh_, sequence, meter_, target);
+  EXPECT_FALSE(simpler.MayTakeFewerThan(1e9)) << "nothing was looked at";
   EXPECT_FALSE(simpler.TakesFewerThan(0.7 * bytes).value());
+  EXPECT_TRUE(simpler.MayTakeFewerThan(1.5 * bytes));
+  EXPECT_FALSE(simpler.MayTakeFewerThan(0.5 * bytes));
   ASSERT_TRUE(simpler.TakesFewerThan(1.5 * bytes).value());
   EXPECT_EQ(simpler.stream().stream, least.stream);
   EXPECT_FALSE(simpler.TakesFewerThan(0.7 * bytes).value());
