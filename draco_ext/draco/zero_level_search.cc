@@ -415,12 +415,17 @@ StatusOr<bool> SimplerStream::Find(double most_bytes) {
   return search_->FindSize(most_bytes);
 }
 
+bool SimplerStream::IsHopeless(double bytes) {
+  if (bytes > hopeless_bytes_ && lacerta::IsHopeless(sequence_, meter_, target_, bytes)) hopeless_bytes_ = bytes;
+  return bytes <= hopeless_bytes_;
+}
+
 bool SimplerStream::MayTakeFewerThan(double bytes) const { return search_ && search_->MayTakeFewerThan(bytes); }
 
 StatusOr<bool> SimplerStream::TakesFewerThan(double bytes) {
   const auto does = [&](const ZeroLevelStream& stream) { return stream.meets_target && static_cast<double>(stream.stream.size()) < bytes; };
   if (stream_) return does(*stream_);
-  if (target_.is_rate || IsHopeless(sequence_, meter_, target_, bytes)) return false;
+  if (target_.is_rate || IsHopeless(bytes)) return false;
   LACERTA_ASSIGN_OR_RETURN(const bool may_be, Find(bytes));
   if (!may_be || search_->BestBytes() >= bytes) return false;
   LACERTA_ASSIGN_OR_RETURN(ZeroLevelStream stream, search_->Finish(bytes));
@@ -430,7 +435,7 @@ StatusOr<bool> SimplerStream::TakesFewerThan(double bytes) {
 }
 
 Status SimplerStream::Look(double most_bytes) {
-  if (stream_ || IsHopeless(sequence_, meter_, target_, (1 - kLevelsWorthBytes) * most_bytes)) return Status();
+  if (stream_ || IsHopeless((1 - kLevelsWorthBytes) * most_bytes)) return Status();
   LACERTA_ASSIGN_OR_RETURN(const bool may_be_better, Find(most_bytes));
   if (!may_be_better) return Status();
   LACERTA_ASSIGN_OR_RETURN(stream_, search_->Finish(most_bytes));

@@ -59,6 +59,7 @@ class SimplerStream {
   const ZeroLevelStream& stream() const { return *stream_; }
 
  private:
+  bool IsHopeless(double bytes);           // to take fewer than so many, as one look tells
   StatusOr<bool> Find(double most_bytes);  // false: hopeless
   // Sets stream_ where there is none and one may beat a stream with levels of so many bytes.
   Status Look(double most_bytes);
@@ -70,6 +71,7 @@ class SimplerStream {
   const SearchEffort effort_;
   std::unique_ptr<ZeroLevelSearch> search_;  // null until there is hope
   std::optional<ZeroLevelStream> stream_;
+  double hopeless_bytes_ = 0;  // of the hopeless cases so far, the most
 };
 
 }  // namespace lacerta
