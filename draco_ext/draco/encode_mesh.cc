@@ -202,6 +202,7 @@ StatusOr<ChosenStream> CodeRemeshed(ProxiedInput* input, const SurfaceDistanceMe
                              [&](double bytes) { return (*simpler)->MayTakeFewerThan(bytes); },
                              [&](double bytes) { (*simpler)->PrepareBeside(bytes); }};
   std::vector<RefinableSurface> simplifications;
+  simplifications.reserve(histories.size());
   for (const CollapseHistory& history : histories) simplifications.push_back({surface, history, still.mesh});
   return CodeAtTarget(simplifications, meter, target, options.mode, options.progress, effort, *simpler ? &rival : nullptr);
 }
