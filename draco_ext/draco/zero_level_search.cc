@@ -27,17 +27,6 @@ constexpr uint64_t kSizeSamples = 4000;  // that tell how far a mesh may be simp
 
 double Square(double x) { return x * x; }
 
-// Whether no simplified mesh at the PSNR takes fewer than `bytes`, as one look tells at a mesh that is larger than any that does. Never
-// certain at a rate, nor where the input may be so regular that it takes hardly any bytes.
-bool IsHopeless(const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, double bytes) {
-  constexpr double kMostGain = 2;  // of the fit, in squared distance
-  const double triangles = std::max(bytes / kFewestBytesPerTriangle, static_cast<double>(sequence.fewest_triangles()));
-  if (target.is_rate || kMostRegular * triangles > static_cast<double>(sequence.num_input_triangles())) return false;
-  const TriangleMesh simplified = sequence.MeshWith(static_cast<uint32_t>(triangles));
-  const double distance = DecodedDistance(meter, simplified, SurfaceDistanceOptions::RmsOnly(kSizeSamples));
-  return Square(distance) > kMostGain * Square(DistanceOfPsnr(target.psnr, meter.diagonal()));
-}
-
 }  // namespace
 
 class ZeroLevelSearch {
@@ -72,14 +61,11 @@ class ZeroLevelSearch {
     }
     // A mesh of many regular triangles may take fewer bytes as it is.
     if (static_cast<double>(mesh_.triangles.size()) < kMostRegular * best_) LACERTA_RETURN_IF_ERROR(Look(Clamped(1e18)));
-    return !IsOver(kHopelessAtBest * most_bytes);
+    return MayTakeFewerThan(most_bytes);
   }
 
-  // Whether the best size so far does not tell otherwise. At a PSNR.
-  bool MayTakeFewerThan(double bytes) const {
-    if (tried_.empty()) return false;  // what was looked at failed
-    return BestBytes() < kHopelessAtBest * bytes;
-  }
+  // Whether the best size so far does not tell otherwise; false where there is none.
+  bool MayTakeFewerThan(double bytes) const { return !tried_.empty() && !IsOver(kHopelessAtBest * bytes); }
 
   // Of the stream of the best size, about; the fewest that so many triangles take where that seems to miss the PSNR.
   double BestBytes() const {
@@ -415,9 +401,18 @@ StatusOr<bool> SimplerStream::Find(double most_bytes) {
   return search_->FindSize(most_bytes);
 }
 
+// As one look tells at a mesh that is larger than any that does. Never certain at a rate, nor where the input may be so regular that it takes
+// hardly any bytes.
 bool SimplerStream::IsHopeless(double bytes) {
-  if (bytes > hopeless_bytes_ && lacerta::IsHopeless(sequence_, meter_, target_, bytes)) hopeless_bytes_ = bytes;
-  return bytes <= hopeless_bytes_;
+  constexpr double kMostGain = 2;  // of the fit, in squared distance
+  if (bytes <= hopeless_bytes_) return true;
+  const double triangles = std::max(bytes / kFewestBytesPerTriangle, static_cast<double>(sequence_.fewest_triangles()));
+  if (target_.is_rate || kMostRegular * triangles > static_cast<double>(sequence_.num_input_triangles())) return false;
+  const TriangleMesh simplified = sequence_.MeshWith(static_cast<uint32_t>(triangles));
+  const double distance = DecodedDistance(meter_, simplified, SurfaceDistanceOptions::RmsOnly(kSizeSamples));
+  if (!(Square(distance) > kMostGain * Square(DistanceOfPsnr(target_.psnr, meter_.diagonal())))) return false;
+  hopeless_bytes_ = bytes;
+  return true;
 }
 
 bool SimplerStream::MayTakeFewerThan(double bytes) const { return search_ && search_->MayTakeFewerThan(bytes); }

@@ -59,7 +59,7 @@ class SimplerStream {
   const ZeroLevelStream& stream() const { return *stream_; }
 
  private:
-  bool IsHopeless(double bytes);           // to take fewer than so many, as one look tells
+  bool IsHopeless(double bytes);           // for a simplified mesh at the PSNR to take fewer than so many
   StatusOr<bool> Find(double most_bytes);  // false: hopeless
   // Sets stream_ where there is none and one may beat a stream with levels of so many bytes.
   Status Look(double most_bytes);
@@ -71,7 +71,7 @@ class SimplerStream {
   const SearchEffort effort_;
   std::unique_ptr<ZeroLevelSearch> search_;  // null until there is hope
   std::optional<ZeroLevelStream> stream_;
-  double hopeless_bytes_ = 0;  // of the hopeless cases so far, the most
+  double hopeless_bytes_ = 0;  // so many or fewer are known to be
 };
 
 }  // namespace lacerta
