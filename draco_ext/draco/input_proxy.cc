@@ -1,7 +1,6 @@
 #include "draco/input_proxy.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "draco/decoded_distance.h"
 #include "draco/rate_control.h"
@@ -44,7 +43,7 @@ class ProxySearch {
 }  // namespace
 
 std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                       const InputProxyOptions& options, InputProxyNotes* notes) {
+                                       const InputProxyOptions& options, bool* is_coarse) {
   const size_t num_triangles = cleaned.triangles.size(), half = num_triangles / 2;
   const bool is_too_large = num_triangles > options.most_triangles;
   if (options.fewest_triangles > half && !is_too_large) return std::nullopt;
@@ -63,16 +62,13 @@ std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const Surfac
   TriangleMesh reduced;
   const bool is_reduced = num_triangles > options.most_as_a_whole;
   if (is_reduced) reduced = SimplifyInParts(cleaned, options.most_as_a_whole, options.part_triangles);
-  std::optional<SimplificationSequence> sequence(std::in_place, is_reduced ? reduced : cleaned);
+  const SimplificationSequence sequence(is_reduced ? reduced : cleaned);
   reduced = {};
-  std::optional<TriangleMesh> proxy = search.FirstNearEnough(*sequence, std::min<size_t>(sequence->num_input_triangles(), most));
+  std::optional<TriangleMesh> proxy = search.FirstNearEnough(sequence, std::min<size_t>(sequence.num_input_triangles(), most));
   if (proxy) return proxy;
-  if (is_too_large) {
-    if (notes != nullptr) notes->is_coarse = true;
-    return sequence->MeshWith(options.most_triangles);
-  }
-  if (notes != nullptr && !is_reduced) notes->whole = std::move(sequence);
-  return std::nullopt;
+  if (!is_too_large) return std::nullopt;
+  if (is_coarse != nullptr) *is_coarse = true;
+  return sequence.MeshWith(options.most_triangles);
 }
 
 }  // namespace lacerta

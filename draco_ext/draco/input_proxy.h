@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "draco/bounded_simplification.h"
 #include "draco/candidate_search.h"
 #include "lacerta/mesh.h"
 #include "lacerta/surface_distance.h"
@@ -28,20 +29,14 @@ struct InputProxyOptions {
   uint32_t most_as_a_whole = std::numeric_limits<uint32_t>::max(), most_triangles = std::numeric_limits<uint32_t>::max();
 };
 
-// What else comes of looking for a proxy.
-struct InputProxyNotes {
-  bool is_coarse = false;  // it is farther from the input than the options allow, for want of triangles
-  std::optional<SimplificationSequence> whole;  // the collapses of the input, where no proxy was found among them
-};
-
 // The input, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them, unless
 // there are more than most_triangles, nor where there are more components than it may have triangles.
 //   cleaned  what Clean returned of the input
 //   meter    of the input
 //   target   of the stream
-//   notes    may be null
+//   is_coarse  may be null; whether it is farther from the input than the options allow, for want of triangles
 std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                       const InputProxyOptions& options = {}, InputProxyNotes* notes = nullptr);
+                                       const InputProxyOptions& options = {}, bool* is_coarse = nullptr);
 
 // What is remeshed and simplified: the input, or its proxy where there is one. What it refers to must outlive it.
 class ProxiedInput {
@@ -52,28 +47,27 @@ class ProxiedInput {
 
   // Makes the proxy when first called. Not for several threads at a time.
   const TriangleMesh& Mesh() {
-    if (!is_made_) proxy_ = InputProxy(cleaned_, meter_, target_, options_, &notes_);
+    if (!is_made_) proxy_ = InputProxy(cleaned_, meter_, target_, options_, &is_coarse_);
     is_made_ = true;
     return proxy_ ? *proxy_ : cleaned_;
   }
-  // The collapses of that mesh, made once, too.
+  // The BoundedSimplification of that mesh, made once, too.
   const SimplificationSequence& Sequence() {
-    const TriangleMesh& mesh = Mesh();
-    if (!notes_.whole) notes_.whole.emplace(mesh);
-    return *notes_.whole;
+    if (!sequence_) sequence_ = BoundedSimplification(Mesh(), meter_, target_);
+    return *sequence_;
   }
 
   // Of the proxy, once it was made: as for InputProxy.
-  bool is_coarse() const { return notes_.is_coarse; }
+  bool is_coarse() const { return is_coarse_; }
 
  private:
   const TriangleMesh& cleaned_;
   const SurfaceDistanceMeter& meter_;
   const ResolvedTarget& target_;
   const InputProxyOptions options_;
-  bool is_made_ = false;
+  bool is_made_ = false, is_coarse_ = false;
   std::optional<TriangleMesh> proxy_;
-  InputProxyNotes notes_;  // `whole`: of the proxy, once it was asked for
+  std::optional<SimplificationSequence> sequence_;
 };
 
 }  // namespace lacerta

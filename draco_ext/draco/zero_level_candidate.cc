@@ -55,10 +55,10 @@ StatusOr<ZeroLevelCandidate::Coding> ZeroLevelCandidate::Code(double step, int r
 
 LatticeMesh ZeroLevelCandidate::FitLattice(double step, int rounds, double* distortion) const {
   const RateModel rate{step, distortion_per_bit_};
-  LatticeMesh lattice = FitToLattice(mesh_, model_, *neighbors_, rate);
+  LatticeMesh lattice = FitToLattice(target_, mesh_, model_, *neighbors_, rate);
   DistanceModel model = target_.ModelAt(lattice.ToMesh(), *neighbors_);
   for (int i = 1; i < rounds; ++i) {
-    LatticeMesh again = FitToLattice(lattice.ToMesh(), model, *neighbors_, rate);
+    LatticeMesh again = FitToLattice(target_, lattice.ToMesh(), model, *neighbors_, rate);
     DistanceModel model_again = target_.ModelAt(again.ToMesh(), *neighbors_);
     lattice = std::move(again);
     model = std::move(model_again);

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "draco/bounded_simplification.h"
 #include "draco/decoded_distance.h"
 #include "draco/simplified_size.h"
 #include "draco/zero_level.h"
@@ -33,7 +34,8 @@ class ZeroLevelSearch {
  public:
   ZeroLevelSearch(const TriangleMesh& mesh, const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter,
                   const ResolvedTarget& target, const SearchEffort& effort)
-      : mesh_(mesh), meter_(meter), target_(target), tries_(effort.zero_level_tries), sequence_(sequence), fit_target_(mesh, FewestSamples(mesh)) {
+      : mesh_(mesh), meter_(meter), target_(target), tries_(effort.zero_level_tries), sequence_(sequence),
+        fit_target_(mesh, FewestSamples(mesh), sequence.original() ? sequence.original()->farthest() : 0) {
     if (!target.is_rate) distortion_ = Square(DistanceOfPsnr(target.psnr, meter.diagonal()));
   }
 
@@ -380,7 +382,7 @@ ZeroLevelStream MeasuredZeroLevel(CodedZeroLevel coded, const SurfaceDistanceMet
 
 StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                         const SearchEffort& effort) {
-  return CodeZeroLevel(mesh, SimplificationSequence(mesh), meter, target, effort);
+  return CodeZeroLevel(mesh, BoundedSimplification(mesh, meter, target), meter, target, effort);
 }
 
 StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SimplificationSequence& sequence, const SurfaceDistanceMeter& meter,

@@ -48,7 +48,8 @@ AttributedSimplifier::AttributedSimplifier(const AttributedMesh& input, const We
   if (bounds.anywhere > 0) {
     std::vector<uint32_t> groups;
     for (const uint32_t f : start.source_face) groups.push_back(input.GroupOf(f));
-    deviation_.emplace(positions_, triangles_, std::move(groups), bounds.anywhere / scale_);
+    auto samples = std::make_shared<const DeviationSamples>(positions_, triangles_, groups, bounds.anywhere / scale_);
+    deviation_.emplace(std::move(samples), triangles_.size(), std::move(groups));
   }
   for (size_t a = 0; a < input.attributes.size(); ++a) {
     channels_.emplace_back(input.attributes[a], start.attributes[a], weights[a], start.num_vertices());

@@ -1,7 +1,11 @@
 #include "remesh/deviation_bound.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <limits>
 #include <utility>
 
 #include "geometry/closest_on_triangle.h"
@@ -9,64 +13,55 @@
 namespace lacerta {
 namespace {
 
-TriangleMesh ToMesh(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles) {
-  TriangleMesh mesh;
-  mesh.triangles = triangles;
-  mesh.positions.reserve(positions.size());
-  for (const Vec3d& p : positions) mesh.positions.push_back(Vec3Cast<float>(p));
-  return mesh;
-}
-
-// Calls visit(point) for points of a triangle that divide each side into `steps`, its corners left out.
-template <typename Visit>
-void ForEachPoint(const std::array<Vec3d, 3>& t, uint32_t steps, const Visit& visit) {
-  const Vec3d ab = (t[1] - t[0]) * (1.0 / steps), ac = (t[2] - t[0]) * (1.0 / steps);
-  for (uint32_t i = 0; i <= steps; ++i) {
-    for (uint32_t j = 0; i + j <= steps; ++j) {
-      const bool is_corner = i == steps || j == steps || i + j == 0;
-      if (!is_corner) visit(t[0] + ab * i + ac * j);
-    }
-  }
-}
+constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
 }  // namespace
 
-DeviationBound::DeviationBound(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles, std::vector<uint32_t> groups, double farthest)
-    : groups_(std::move(groups)), farthest_(farthest), original_(ToMesh(positions, triangles)), first_(triangles.size(), kNone) {
-  std::vector<uint32_t> last_group(positions.size(), kNone);
-  for (uint32_t f = 0; f < triangles.size(); ++f) {
-    const Triangle& t = triangles[f];
-    for (const uint32_t v : t) {
-      if (last_group[v] != groups_[f]) Add(positions[v], f);
-      last_group[v] = groups_[f];
+DeviationBound::DeviationBound(std::shared_ptr<const DeviationSamples> original, size_t num_triangles)
+    : original_(std::move(original)),
+      most_squared_(original_->size(), original_->farthest() * original_->farthest()),
+      first_(num_triangles, kNone),
+      next_(original_->size(), kNone) {}
+
+DeviationBound::DeviationBound(std::shared_ptr<const DeviationSamples> original, size_t num_triangles, std::vector<uint32_t> groups)
+    : DeviationBound(std::move(original), num_triangles) {
+  groups_ = std::move(groups);
+  for (uint32_t s = 0; s < original_->size(); ++s) Put({s, original_->triangle(s)});
+}
+
+DeviationBound::DeviationBound(std::shared_ptr<const DeviationSamples> original, const TriangleMesh& surface)
+    : DeviationBound(std::move(original), surface.triangles.size()) {
+  const TriangleTree tree(surface);
+  std::vector<uint32_t> nearest(original_->size());
+  constexpr uint32_t kGrain = 1024;
+  tbb::parallel_for(tbb::blocked_range<uint32_t>(0, original_->size(), kGrain), [&](const tbb::blocked_range<uint32_t>& range) {
+    uint32_t hint = SurfacePoint::kNone;
+    for (uint32_t s = range.begin(); s != range.end(); ++s) {
+      const ClosestPointResult closest = tree.ClosestPointNear(Vec3Cast<float>(original_->position(s)), hint);
+      hint = nearest[s] = closest.point.face;
+      if (hint != SurfacePoint::kNone) most_squared_[s] = std::max(most_squared_[s], static_cast<double>(closest.squared_distance));
     }
-    const std::array<Vec3d, 3> corners = {positions[t[0]], positions[t[1]], positions[t[2]]};
-    ForEachPoint(corners, StepsAlong(corners), [&](const Vec3d& p) { Add(p, f); });
+  });
+  for (uint32_t s = 0; s < original_->size(); ++s) {
+    if (nearest[s] != SurfacePoint::kNone) Put({s, nearest[s]});
   }
 }
 
-// Steps from sample to sample along a side.
-uint32_t DeviationBound::StepsAlong(const std::array<Vec3d, 3>& t) const {
-  constexpr double kApart = 4, kMost = 4;  // bounds, between samples; steps, however large the triangle
-  const double longest = std::max({Norm(t[1] - t[0]), Norm(t[2] - t[1]), Norm(t[0] - t[2])});
-  return static_cast<uint32_t>(std::clamp(std::ceil(longest / (kApart * farthest_)), 1.0, kMost));
+void DeviationBound::Put(const Place& place) {
+  next_[place.sample] = first_[place.triangle];
+  first_[place.triangle] = place.sample;
 }
 
-void DeviationBound::Add(const Vec3d& sample, uint32_t triangle) {
-  next_.push_back(first_[triangle]);
-  first_[triangle] = static_cast<uint32_t>(samples_.size());
-  samples_.push_back(sample);
-}
-
-uint32_t DeviationBound::NearestOf(const Vec3d& to, const std::vector<Face>& faces, uint32_t own, const Vec3d& sample) const {
+uint32_t DeviationBound::NearestOf(const Vec3d& to, const std::vector<Face>& faces, uint32_t own, uint32_t sample) const {
   constexpr double kUpon = 0.1;  // of the squared bound: no need to look for a nearer one
-  const double upon = kUpon * farthest_ * farthest_;
+  const Vec3d& position = original_->position(sample);
   uint32_t nearest = kNone;
-  double least = farthest_ * farthest_;
+  double least = most_squared_[sample];
+  const double upon = kUpon * least;
   for (const Face& face : faces) {
-    if (!face.remains || groups_[face.triangle] != groups_[own]) continue;
+    if (!face.remains || (!groups_.empty() && groups_[face.triangle] != groups_[own])) continue;
     ClosestWeights closest;
-    if (!ClosestOnTriangle(sample, to, face.a, face.b, least, &closest) || closest.squared_distance > least) continue;
+    if (!ClosestOnTriangle(position, to, face.a, face.b, least, &closest) || closest.squared_distance > least) continue;
     least = closest.squared_distance;
     nearest = face.triangle;
     if (least < upon) break;
@@ -74,20 +69,17 @@ uint32_t DeviationBound::NearestOf(const Vec3d& to, const std::vector<Face>& fac
   return nearest;
 }
 
-bool DeviationBound::IsNearOriginal(const Vec3d& point) const {
-  return original_.IsNear(Vec3Cast<float>(point), static_cast<float>(farthest_ * farthest_));
-}
-
 // Small triangles are as near as their corners.
 bool DeviationBound::AreNearOriginal(const Vec3d& to, const std::vector<Face>& faces) const {
+  constexpr uint32_t kSteps = 2;
   bool is_near = true, any_large = false;
   for (const Face& face : faces) {
     const std::array<Vec3d, 3> corners = {to, face.a, face.b};
-    if (!face.remains || StepsAlong(corners) == 1) continue;
+    if (!face.remains || !original_->IsLarge(corners)) continue;
     any_large = true;
-    ForEachPoint(corners, 2, [&](const Vec3d& p) { is_near = is_near && IsNearOriginal(p); });
+    ForEachPointWithin(corners, kSteps, [&](const Vec3d& p) { is_near = is_near && original_->IsNear(p); });
   }
-  return is_near && (!any_large || IsNearOriginal(to));
+  return is_near && (!any_large || original_->IsNear(to));
 }
 
 bool DeviationBound::Allows(const Vec3d& to, const std::vector<Face>& faces) {
@@ -96,7 +88,7 @@ bool DeviationBound::Allows(const Vec3d& to, const std::vector<Face>& faces) {
   for (const Face& face : faces) {
     changed_.push_back(face.triangle);
     for (uint32_t s = first_[face.triangle]; s != kNone; s = next_[s]) {
-      const uint32_t nearest = NearestOf(to, faces, face.triangle, samples_[s]);
+      const uint32_t nearest = NearestOf(to, faces, face.triangle, s);
       if (nearest == kNone) return false;
       places_.push_back({s, nearest});
     }
@@ -106,9 +98,15 @@ bool DeviationBound::Allows(const Vec3d& to, const std::vector<Face>& faces) {
 
 void DeviationBound::Accept() {
   for (const uint32_t triangle : changed_) first_[triangle] = kNone;
-  for (const Place& place : places_) {
-    next_[place.sample] = first_[place.triangle];
-    first_[place.triangle] = place.sample;
+  for (const Place& place : places_) Put(place);
+}
+
+void DeviationBound::Give(uint32_t triangle, uint32_t to) {
+  uint32_t sample = std::exchange(first_[triangle], kNone);
+  while (sample != kNone) {
+    const uint32_t next = next_[sample];
+    Put({sample, to});
+    sample = next;
   }
 }
 

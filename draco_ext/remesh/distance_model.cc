@@ -140,8 +140,8 @@ Vec3d Symmetric3::Solve(const Vec3d& b) const {
   return Vec3d{c00 * b.x + c01 * b.y + c02 * b.z, c01 * b.x + c11 * b.y + c12 * b.z, c02 * b.x + c12 * b.y + c22 * b.z} * (1 / det);
 }
 
-FitTarget::FitTarget(const TriangleMesh& mesh, size_t num_samples)
-    : mesh_(mesh), tree_(mesh), diagonal_(BoundingBoxDiagonal(mesh)) {
+FitTarget::FitTarget(const TriangleMesh& mesh, size_t num_samples, double farthest)
+    : mesh_(mesh), tree_(mesh), diagonal_(BoundingBoxDiagonal(mesh)), farthest_(farthest) {
   Resample(num_samples);
 }
 
@@ -191,6 +191,12 @@ double FitTarget::SquaredDistance(const Vec3f& point, uint32_t* hint) const {
   const ClosestPointResult closest = tree_.ClosestPointNear(point, *hint);
   *hint = closest.point.face;
   return static_cast<double>(closest.squared_distance);
+}
+
+double FitTarget::Excess(const Vec3f& point) const {
+  const double most = farthest_ * farthest_;
+  if (farthest_ == 0 || tree_.IsNear(point, static_cast<float>(most))) return 0;
+  return static_cast<double>(tree_.ClosestPoint(point).squared_distance) / most;
 }
 
 std::vector<FitResidual> FitTarget::Forward(const TriangleMesh& mesh, const TriangleTree& tree) const {

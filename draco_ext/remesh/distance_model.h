@@ -45,8 +45,9 @@ struct FitResidual;
 class FitTarget {
  public:
   // mesh: with some area (SurfaceDistanceMeter::Create succeeds on it); must outlive the target. Takes about `num_samples` points,
-  // in an order of neighbours; small parts of many faces get more of them than their area asks for.
-  FitTarget(const TriangleMesh& mesh, size_t num_samples);
+  // in an order of neighbours; small parts of many faces get more of them than their area asks for. farthest: how far from the mesh vertices of another one
+  // may go where they are fitted, model units; 0: anywhere.
+  FitTarget(const TriangleMesh& mesh, size_t num_samples, double farthest = 0);
 
   // The same with other samples, for little.
   void Resample(size_t num_samples);
@@ -73,6 +74,9 @@ class FitTarget {
   // Of a point to the input. hint: a face of the input that may be near, or SurfacePoint::kNone; becomes the one that is.
   double SquaredDistance(const Vec3f& point, uint32_t* hint) const;
 
+  // The squared distance of a point to the input over that of how far it may be; 0 where it is near enough.
+  double Excess(const Vec3f& point) const;
+
   double diagonal() const { return diagonal_; }
   const TriangleMesh& mesh() const { return mesh_; }
 
@@ -88,6 +92,7 @@ class FitTarget {
   const TriangleMesh& mesh_;
   TriangleTree tree_;
   double diagonal_ = 0;
+  const double farthest_;
   size_t num_samples_ = 0;
   std::vector<Sample> samples_;
 };

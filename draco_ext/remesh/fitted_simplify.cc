@@ -12,6 +12,8 @@ namespace {
 // Of the size of one step to that before. Smaller ones gain as much, and take longer.
 constexpr double kStepRatio = 1 / 1.1;
 
+uint32_t NextStep(uint32_t num_triangles) { return static_cast<uint32_t>(kStepRatio * num_triangles); }
+
 }  // namespace
 
 FittedSimplification::FittedSimplification(const SimplificationSequence& sequence, const Options& options, FitTarget* target)
@@ -25,14 +27,14 @@ FittedSimplification::Step FittedSimplification::Fitted(TriangleMesh mesh, uint3
   constexpr double kLatticeShare = 0.28;  // of what the fit is off by: what streams at a target mostly come to
   EdgeFlipper flipper(*target_, &mesh);
   flipper.Flip(RateModel::For(kLatticeShare * flipper.Distortion(), mesh.positions.size()));
-  return {num_triangles, SimplificationSequence(mesh)};
+  return {num_triangles, SimplificationSequence(mesh, {{}, sequence_.original(), NextStep(num_triangles)})};
 }
 
 TriangleMesh FittedSimplification::MeshWith(uint32_t num_triangles) {
   if (!IsOfStep(num_triangles)) return sequence_.MeshWith(num_triangles);
   if (steps_.empty()) steps_.push_back(Fitted(sequence_.MeshWith(options_.largest), options_.largest));
   for (;;) {
-    const auto next = static_cast<uint32_t>(kStepRatio * steps_.back().num_triangles);
+    const uint32_t next = NextStep(steps_.back().num_triangles);
     if (next < num_triangles || next == steps_.back().num_triangles) break;
     steps_.push_back(Fitted(steps_.back().sequence.MeshWith(next), next));
   }

@@ -19,8 +19,8 @@ LatticePoint NearestPoint(const Vec3d& p) { return {Round(p.x), Round(p.y), Roun
 // Coordinate descent over lattice points.
 class LatticeDescent {
  public:
-  LatticeDescent(const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate)
-      : mesh_(mesh), model_(model), neighbors_(neighbors), rate_(rate), origin_(Vec3Cast<double>(BoundsOf(mesh.positions).low)) {
+  LatticeDescent(const FitTarget& target, const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate)
+      : target_(target), mesh_(mesh), model_(model), neighbors_(neighbors), rate_(rate), origin_(Vec3Cast<double>(BoundsOf(mesh.positions).low)) {
     lattice_.reserve(mesh.positions.size());
     moves_.resize(mesh.positions.size());
     for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
@@ -66,7 +66,7 @@ class LatticeDescent {
     const LatticePoint current = lattice_[v];
     const int current_turned = NumTurned(v);
     LatticePoint best = current;
-    double best_cost = Cost(v, slope, best, std::numeric_limits<double>::infinity()) + CostOfTurned(current_turned);
+    double best_cost = Cost(v, slope, best, std::numeric_limits<double>::infinity()) + CostOfTurned(current_turned) + CostOfExcess(v, best);
     const Vec3d exact = (Vec3Cast<double>(mesh_.positions[v]) + optimum - origin_) * (1 / rate_.step);
     for (const LatticePoint& center : {current, NearestPoint(exact)}) {
       for (int i = 0; i < 27; ++i) {
@@ -80,6 +80,7 @@ class LatticeDescent {
           if (turned > current_turned) continue;
           cost += CostOfTurned(turned);
         }
+        if (cost < best_cost) cost += CostOfExcess(v, p);
         if (cost < best_cost) {
           best_cost = cost;
           best = p;
@@ -150,8 +151,16 @@ class LatticeDescent {
     return kBits * turned * rate_.distortion_per_bit;
   }
 
+  // What is far off and small is not even that.
+  double CostOfExcess(uint32_t v, const LatticePoint& p) const {
+    constexpr double kBits = 20;
+    const Vec3d position = Vec3Cast<double>(mesh_.positions[v]) + MoveTo(v, p);
+    return kBits * target_.Excess(Vec3Cast<float>(position)) * rate_.distortion_per_bit;
+  }
+
   static constexpr double kFarthest = 3;  // steps from where the model was made
 
+  const FitTarget& target_;
   const TriangleMesh& mesh_;
   const DistanceModel& model_;
   const MeshNeighbors& neighbors_;
@@ -186,8 +195,8 @@ LatticeMesh NearestOnLattice(const TriangleMesh& mesh, double step) {
   return result;
 }
 
-LatticeMesh FitToLattice(const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate) {
-  LatticeDescent descent(mesh, model, neighbors, rate);
+LatticeMesh FitToLattice(const FitTarget& target, const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate) {
+  LatticeDescent descent(target, mesh, model, neighbors, rate);
   constexpr int kSweeps = 3;
   for (int i = 0; i < kSweeps; ++i) descent.Sweep();
   return descent.Result();

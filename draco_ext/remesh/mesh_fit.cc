@@ -95,6 +95,14 @@ class RoundSystem {
   std::vector<double> flap_weights_;
 };
 
+// Puts back vertices that went too far from the input.
+void UndoExcess(const FitTarget& target, const std::vector<Vec3f>& before, TriangleMesh* mesh) {
+  for (size_t v = 0; v < before.size(); ++v) {
+    const double excess = target.Excess(mesh->positions[v]);
+    if (excess > 0 && excess > target.Excess(before[v])) mesh->positions[v] = before[v];
+  }
+}
+
 // Puts back the vertices of triangles that turned over, or were folded onto a neighbor, until none is.
 void UndoFlips(const std::vector<Vec3f>& before, const MeshNeighbors& neighbors, TriangleMesh* mesh) {
   constexpr int kMostPasses = 10;
@@ -148,6 +156,7 @@ void FitToSurface(const FitTarget& target, const MeshNeighbors& neighbors, const
     const Moves moves = RoundSystem(model, neighbors, rate, *mesh).Solve();
     const std::vector<Vec3f> before = mesh->positions;
     for (size_t v = 0; v < moves.size(); ++v) mesh->positions[v] = Vec3Cast<float>(Vec3Cast<double>(before[v]) + moves[v]);
+    UndoExcess(target, before, mesh);
     UndoFlips(before, neighbors, mesh);
   }
 }

@@ -29,7 +29,7 @@ struct RateModel {
 };
 
 // E + distortion_per_bit * bits, minimized by rounds of Gauss-Newton steps. Triangles that would turn over, or be folded onto a
-// neighbor, stay as they were.
+// neighbor, stay as they were, and so do vertices that would go farther than the target allows, and farther than they are.
 void FitToSurface(const FitTarget& target, const MeshNeighbors& neighbors, const RateModel& rate, int rounds, TriangleMesh* mesh);
 
 // A mesh whose positions are origin + step * lattice.
@@ -45,10 +45,10 @@ struct LatticeMesh {
 // Every vertex at the lattice point next to it. The lattice begins at the lower corner of the mesh. step: as below.
 LatticeMesh NearestOnLattice(const TriangleMesh& mesh, double step);
 
-// Rounds `mesh`, at which `model` was made, to the lattice of step rate.step: each vertex in turn to the point near it that is best
-// by the model and the bits, in a few sweeps. The lattice begins at the lower corner of the mesh. step: > 0, and at least 2^-23 of
+// Rounds `mesh`, at which the target's `model` was made, to the lattice of step rate.step: each vertex in turn to the point near it that is best
+// by the model and the bits, in a few sweeps; what is farther than the target allows costs more. The lattice begins at the lower corner of the mesh. step: > 0, and at least 2^-23 of
 // the largest side of the mesh.
-LatticeMesh FitToLattice(const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate);
+LatticeMesh FitToLattice(const FitTarget& target, const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate);
 
 }  // namespace lacerta
 

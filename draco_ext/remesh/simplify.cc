@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "geometry/bounding_box.h"
 #include "remesh/collapse_queue.h"
 #include "remesh/corner_rings.h"
+#include "remesh/deviation_bound.h"
 #include "remesh/folds.h"
 #include "remesh/placement.h"
 #include "remesh/quadric.h"
@@ -48,7 +50,7 @@ constexpr double kFoldPenalty = 0.2;
 
 class Simplifier {
  public:
-  Simplifier(const TriangleMesh& mesh, const std::vector<uint8_t>& held, SimplificationSequence* sequence);
+  Simplifier(const TriangleMesh& mesh, const SimplificationOptions& options, SimplificationSequence* sequence);
   void Run();
 
  private:
@@ -60,6 +62,7 @@ class Simplifier {
   void PushAround(uint32_t v);
   std::vector<uint32_t> TrianglesOf(uint32_t v);
   Effect EffectOf(uint32_t u, uint32_t v, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v);
+  Vec3d InModel(const Vec3d& p) const { return p * scale_ + center_; }
   bool IsHeld(uint32_t v) const { return !held_.empty() && held_[v] != 0; }
   bool IsNearHeld(const std::vector<uint32_t>& around) const;
   bool LosesHeld(uint32_t u, uint32_t v, const std::vector<uint32_t>& around_u) const;
@@ -67,12 +70,15 @@ class Simplifier {
   void Kill(uint32_t triangle);
   void AddSpokes(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around);
   double NewFolds(uint32_t u, uint32_t v, const Vec3d& to, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v);
+  void AddFaces(uint32_t moved, uint32_t other, const std::vector<uint32_t>& around, bool with_shared);
+  bool StaysNear(uint32_t u, uint32_t v, const Vec3d& to, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v);
   bool AnyTurnsOver(uint32_t moved, uint32_t other, const Vec3d& to, const std::vector<uint32_t>& around) const;
   void Collapse(uint32_t kept, uint32_t removed, const Vec3d& position, const std::vector<uint32_t>& around_removed, bool pinched);
   uint32_t NextMark();
 
   SimplificationSequence* const sequence_;
   const std::vector<uint8_t>& held_;
+  const uint32_t fewest_triangles_;
   Vec3d center_;
   double scale_ = 1;
   std::vector<Vec3d> positions_;  // centered and scaled to unit size: quadrics lose their digits far from the origin
@@ -91,11 +97,14 @@ class Simplifier {
   std::vector<uint32_t> ring_;    // corners of the vertex that is looked at
   std::vector<uint32_t> killed_;  // triangles, by the collapse that is made
   FoldedSpokes spokes_;
+  std::optional<DeviationBound> deviation_;    // in model units
+  std::vector<DeviationBound::Face> faces_;  // of the collapse that is looked at
 };
 
-Simplifier::Simplifier(const TriangleMesh& mesh, const std::vector<uint8_t>& held, SimplificationSequence* sequence)
+Simplifier::Simplifier(const TriangleMesh& mesh, const SimplificationOptions& options, SimplificationSequence* sequence)
     : sequence_(sequence),
-      held_(held),
+      held_(options.held),
+      fewest_triangles_(options.fewest_triangles),
       triangles_(mesh.triangles),
       dead_(mesh.triangles.size(), 0),
       remembered_(mesh.positions.size()),
@@ -121,6 +130,7 @@ Simplifier::Simplifier(const TriangleMesh& mesh, const std::vector<uint8_t>& hel
   }
   // Orders flat regions by edge length; elsewhere it is nothing.
   edge_weight_ = 1e-9 * area / static_cast<double>(triangles_.size());
+  if (options.original) deviation_.emplace(options.original, mesh);
 }
 
 void Simplifier::RememberPlanes() {
@@ -224,7 +234,9 @@ void Simplifier::PushAround(uint32_t v) {
     }
   }
   killed_.clear();
-  for (const uint32_t w : changed) quadrics_[w] = QuadricOf(w);
+  for (const uint32_t w : changed) {
+    if (valence_[w] <= kMaxRing) quadrics_[w] = QuadricOf(w);  // of others nobody asks for it
+  }
   for (const uint32_t w : neighbors) Push(v, w);
 }
 
@@ -283,7 +295,11 @@ bool Simplifier::LosesHeld(uint32_t u, uint32_t v, const std::vector<uint32_t>& 
 
 // Of triangles around v on the same three vertices one stays, whichever way they look.
 void Simplifier::RemoveCoincident(uint32_t v) {
-  std::vector<std::array<uint32_t, 2>> seen;  // the two other vertices
+  struct Seen {
+    std::array<uint32_t, 2> others;  // vertices
+    uint32_t triangle;
+  };
+  std::vector<Seen> seen;
   for (const uint32_t t : TrianglesOf(v)) {
     std::array<uint32_t, 2> others{};
     size_t count = 0;
@@ -291,10 +307,12 @@ void Simplifier::RemoveCoincident(uint32_t v) {
       if (w != v && count < 2) others[count++] = w;
     }
     std::sort(others.begin(), others.end());
-    if (std::find(seen.begin(), seen.end(), others) == seen.end()) {
-      seen.push_back(others);
+    const auto same = std::find_if(seen.begin(), seen.end(), [&](const Seen& s) { return s.others == others; });
+    if (same == seen.end()) {
+      seen.push_back({others, t});
       continue;
     }
+    if (deviation_) deviation_->Give(t, same->triangle);
     Kill(t);
     sequence_->removed_.push_back({t, static_cast<uint32_t>(sequence_->collapses_.size()) + 1});
   }
@@ -339,8 +357,29 @@ double Simplifier::NewFolds(uint32_t u, uint32_t v, const Vec3d& to, const std::
   return std::max(0.0, after - before_u - spokes_.TakeArea());
 }
 
+// The triangles of `moved` but for those of `other` that were added with it, as they are for the bound.
+void Simplifier::AddFaces(uint32_t moved, uint32_t other, const std::vector<uint32_t>& around, bool with_shared) {
+  for (const uint32_t t : around) {
+    const Triangle& c = triangles_[t];
+    const bool is_shared = c[0] == other || c[1] == other || c[2] == other;
+    if (is_shared && !with_shared) continue;
+    const int k = c[0] == moved ? 0 : c[1] == moved ? 1 : 2;
+    faces_.push_back({t, !is_shared, InModel(positions_[c[(k + 1) % 3]]), InModel(positions_[c[(k + 2) % 3]])});
+  }
+}
+
+// Whether no point goes farther than it may.
+bool Simplifier::StaysNear(uint32_t u, uint32_t v, const Vec3d& to, const std::vector<uint32_t>& around_u, const std::vector<uint32_t>& around_v) {
+  if (!deviation_) return true;
+  faces_.clear();
+  AddFaces(u, v, around_u, true);
+  AddFaces(v, u, around_v, false);
+  return deviation_->Allows(InModel(to), faces_);
+}
+
 void Simplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position, const std::vector<uint32_t>& around_removed,
                           bool pinched) {
+  if (deviation_) deviation_->Accept();
   for (const uint32_t t : around_removed) {
     Triangle& c = triangles_[t];
     if (c[0] == kept || c[1] == kept || c[2] == kept) {
@@ -357,7 +396,7 @@ void Simplifier::Collapse(uint32_t kept, uint32_t removed, const Vec3d& position
   ++version_[kept];
   ++version_[removed];
   if (pinched) RemoveCoincident(kept);
-  const Vec3f exact = IsHeld(kept) ? sequence_->positions_[kept] : Vec3Cast<float>(position * scale_ + center_);
+  const Vec3f exact = IsHeld(kept) ? sequence_->positions_[kept] : Vec3Cast<float>(InModel(position));
   sequence_->collapses_.push_back({removed, kept, exact, num_alive_});
   PushAround(kept);
 }
@@ -368,7 +407,9 @@ void Simplifier::Run() {
   const auto is_void = [this](const EdgeCandidate& e) {
     return e.version != version_[e.u] + version_[e.v] || rings_.is_empty(e.u) || rings_.is_empty(e.v);
   };
-  while (const std::optional<EdgeCandidate> next = queue_.Next(num_alive_, is_void)) {
+  while (num_alive_ > fewest_triangles_) {
+    const std::optional<EdgeCandidate> next = queue_.Next(num_alive_, is_void);
+    if (!next) break;
     const EdgeCandidate& edge = *next;
     if (valence_[edge.u] + valence_[edge.v] > kMaxRing) {
       queue_.Block(edge);
@@ -395,6 +436,10 @@ void Simplifier::Run() {
     }
     const double folds = NewFolds(edge.u, edge.v, position, around_u, around_v) * SquaredNorm(positions_[edge.u] - positions_[edge.v]);
     if (is_dearer((pinches ? kPinchPenalty : 1) * cost + kFoldPenalty * folds)) continue;
+    if (!StaysNear(edge.u, edge.v, position, around_u, around_v)) {
+      queue_.Block(edge);
+      continue;
+    }
     if (IsHeld(edge.v)) {
       Collapse(edge.v, edge.u, position, around_u, pinches);
     } else {
@@ -403,9 +448,9 @@ void Simplifier::Run() {
   }
 }
 
-SimplificationSequence::SimplificationSequence(const TriangleMesh& mesh, const std::vector<uint8_t>& held)
-    : positions_(mesh.positions), triangles_(mesh.triangles) {
-  if (!mesh.triangles.empty()) Simplifier(mesh, held, this).Run();
+SimplificationSequence::SimplificationSequence(const TriangleMesh& mesh, const SimplificationOptions& options)
+    : positions_(mesh.positions), triangles_(mesh.triangles), original_(options.original) {
+  if (!mesh.triangles.empty()) Simplifier(mesh, options, this).Run();
 }
 
 uint32_t SimplificationSequence::fewest_triangles() const {

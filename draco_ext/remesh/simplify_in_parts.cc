@@ -112,9 +112,9 @@ TriangleMesh TakeSurface(const TriangleMesh& surface, const Faces& faces, const 
 }
 
 TriangleMesh SimplifyPart(const TriangleMesh& mesh, uint32_t num_triangles, const Faces& faces, const std::vector<uint8_t>& is_shared) {
-  std::vector<uint8_t> held;
-  const TriangleMesh part = TakeSurface(mesh, faces, is_shared, &held);
-  return SimplificationSequence(part, held).MeshWith(num_triangles);
+  SimplificationOptions options;
+  const TriangleMesh part = TakeSurface(mesh, faces, is_shared, &options.held);
+  return SimplificationSequence(part, options).MeshWith(num_triangles);
 }
 
 AttributedMesh SimplifyPart(const AttributedMesh& input, const std::vector<double>& weights, uint32_t num_triangles, const Faces& faces,

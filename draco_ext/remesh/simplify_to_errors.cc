@@ -12,6 +12,7 @@
 #include "remesh/attribute_fit.h"
 #include "remesh/attributed_simplify.h"
 #include "remesh/curve_fit.h"
+#include "remesh/deviation_samples.h"
 
 namespace lacerta {
 namespace {
@@ -34,12 +35,12 @@ double ShapeTarget(const SurfaceErrorMeter& meter, const ErrorTargets& targets) 
   return std::min(targets.distance, kFarthest * meter.diagonal());
 }
 
-// Of distances that are allowed in the mean. Small parts of large scenes may be far off for their size, and ten times as far would be out of shape.
+// Of distances that are allowed in the mean. Small parts of large scenes may be far off for their size.
 SimplificationBounds BoundsOf(const SurfaceErrorMeter& meter, const ErrorTargets& targets) {
-  constexpr double kCharts = 2, kAnywhere = 10, kAnywhereOfSmall = 4;
+  constexpr double kCharts = 2, kAnywhereOfSmall = 4;
   const double shape = ShapeTarget(meter, targets);
   const bool is_bounded = targets.distance < meter.diagonal();
-  return {kCharts * shape, is_bounded ? std::max(kAnywhere * shape, kAnywhereOfSmall * targets.distance) : 0};
+  return {kCharts * shape, is_bounded ? std::max(kFarthestOverMean * shape, kAnywhereOfSmall * targets.distance) : 0};
 }
 
 struct Trial {

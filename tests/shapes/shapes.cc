@@ -348,6 +348,15 @@ TriangleMesh Scattered(const TriangleMesh& piece, uint32_t count) {
   return mesh;
 }
 
+TriangleMesh WithStick(TriangleMesh mesh, float width, float length) {
+  const Vec3f foot = *std::max_element(mesh.positions.begin(), mesh.positions.end(), [](const Vec3f& a, const Vec3f& b) { return a.z < b.z; });
+  const TriangleMesh cube = CreasedBox(1);
+  const auto first = static_cast<uint32_t>(mesh.positions.size());
+  for (const Vec3f& p : cube.positions) mesh.positions.push_back(foot + Vec3f{p.x > 0 ? width : 0, p.y > 0 ? width : 0, p.z > 0 ? length : 0});
+  for (const Triangle& t : cube.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  return mesh;
+}
+
 std::vector<NamedShape> AllShapes() {
   const auto closed = [](std::string name, TriangleMesh mesh, int genus) {
     return NamedShape{std::move(name), std::move(mesh), true, true, 0, genus};

@@ -73,6 +73,9 @@ TriangleMesh SpheresOverAPlate(int num_spheres, float radius);
 // between them whatever their number.
 TriangleMesh Scattered(const TriangleMesh& piece, uint32_t count);
 
+// The mesh with a stick on its highest vertex, a closed component of square section and 12 faces: what is seen at once and nothing of the area.
+TriangleMesh WithStick(TriangleMesh mesh, float width, float length);
+
 // A shape and what is true of it.
 struct NamedShape {
   std::string name;

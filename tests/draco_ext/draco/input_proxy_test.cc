@@ -65,30 +65,15 @@ TEST_F(InputProxyTest, IsMadeOfPartsWhereThoseAreNearEnough) {
 TEST_F(InputProxyTest, IsNotLookedForAmongFewerTrianglesThanComponents) {
   InputProxyOptions options;
   options.fewest_triangles = 64;
-  InputProxyNotes notes;
   const TriangleMesh soup = shapes::TriangleSoup(3);
   const SurfaceDistanceMeter of_soup = SurfaceDistanceMeter::Create(soup).value();
-  EXPECT_FALSE(InputProxy(soup, of_soup, AtPsnr(10), options, &notes).has_value());
-  EXPECT_FALSE(notes.whole.has_value());  // not even simplified
+  EXPECT_FALSE(InputProxy(soup, of_soup, AtPsnr(10), options).has_value());
   const TriangleMesh pieces = shapes::Scattered(shapes::Icosphere(1), 300);
   const SurfaceDistanceMeter of_pieces = SurfaceDistanceMeter::Create(pieces).value();
-  const std::optional<TriangleMesh> proxy = InputProxy(pieces, of_pieces, AtPsnr(20), options, &notes);
+  const std::optional<TriangleMesh> proxy = InputProxy(pieces, of_pieces, AtPsnr(20), options);
   ASSERT_TRUE(proxy.has_value());
   EXPECT_GE(proxy->triangles.size(), 300u);
   EXPECT_LE(proxy->triangles.size(), 1200u);
-  EXPECT_FALSE(notes.whole.has_value());
-}
-
-TEST_F(InputProxyTest, HandsOverWhatWasSimplifiedInVain) {
-  InputProxyOptions options;
-  options.fewest_triangles = 1000;
-  InputProxyNotes notes;
-  EXPECT_FALSE(InputProxy(mesh_, meter_, AtPsnr(120), options, &notes).has_value());
-  ASSERT_TRUE(notes.whole.has_value());
-  EXPECT_EQ(notes.whole->MeshWith(3000).positions, SimplificationSequence(mesh_).MeshWith(3000).positions);
-  notes.whole.reset();
-  EXPECT_TRUE(InputProxy(mesh_, meter_, AtPsnr(40), options, &notes).has_value());
-  EXPECT_FALSE(notes.whole.has_value());
 }
 
 TEST_F(InputProxyTest, SequenceIsThatOfTheMesh) {

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "draco/bounded_simplification.h"
 #include "draco/zero_level.h"
 #include "lacerta/clean.h"
 #include "lacerta/codec.h"
@@ -41,6 +42,33 @@ TEST_F(ZeroLevelSearchTest, MeetsAPsnrClosely) {
     ExpectIsWhatItSays(stream);
     EXPECT_LT(stream.mesh.triangles.size(), mesh_.triangles.size() / 2);
   }
+}
+
+// What is nothing in the mean, simplified, fitted and rounded.
+TEST(ZeroLevelSearch, GoesNoFartherAnywhereThanItsSimplificationAllows) {
+  const TriangleMesh mesh = shapes::WithStick(shapes::BumpySphere(4, 0.2f), 0.001f, 0.5f);
+  const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(mesh).value();
+  const ResolvedTarget target{false, 0, 58};
+  const auto farthest_by = [&](const SimplificationSequence& sequence) {
+    const ZeroLevelStream stream = CodeZeroLevel(mesh, sequence, meter, target, SearchEffort()).value();
+    EXPECT_TRUE(stream.meets_target);
+    return meter.Measure(stream.mesh).value().Hausdorff() / DistanceOfPsnr(target.psnr, meter.diagonal());
+  };
+  EXPECT_GT(farthest_by(SimplificationSequence(mesh)), 1.5 * kFarthestOverMean);
+  const double bounded = farthest_by(BoundedSimplification(mesh, meter, target));
+  EXPECT_LT(bounded, 1.3 * kFarthestOverMean);
+  EXPECT_GT(bounded, 0.3 * kFarthestOverMean);
+}
+
+// A rate may be too low for it.
+TEST(ZeroLevelSearch, SimplificationIsBoundedAtAPsnr) {
+  const TriangleMesh mesh = shapes::BumpySphere(3, 0.2f);
+  const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(mesh).value();
+  const SimplificationSequence at_psnr = BoundedSimplification(mesh, meter, {false, 0, 60}), at_rate = BoundedSimplification(mesh, meter, {true, 1000, 0});
+  ASSERT_NE(at_psnr.original(), nullptr);
+  EXPECT_DOUBLE_EQ(at_psnr.original()->farthest(), kFarthestOverMean * DistanceOfPsnr(60, meter.diagonal()));
+  EXPECT_EQ(at_rate.original(), nullptr);
+  EXPECT_GT(at_psnr.fewest_triangles(), at_rate.fewest_triangles());
 }
 
 // Which is hard where the whole mesh is as regular as this one.
@@ -196,8 +224,8 @@ TEST_F(ZeroLevelSearchTest, WhatWasPreparedBesideAStreamIsWhatIsFoundWithoutThat
 TEST_F(ZeroLevelSearchTest, LargeMeshesAreNotDismissedWhereASimplerOneIsBetter) {
   for (const TriangleMesh& mesh : {shapes::BumpySphere(5, 0.2f), shapes::Torus(160, 64)}) {
     const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(mesh).value();
-    const SimplificationSequence sequence(mesh);
     const ResolvedTarget target{false, 0, 55};
+    const SimplificationSequence sequence = BoundedSimplification(mesh, meter, target);
     const ZeroLevelStream least = CodeZeroLevel(mesh, meter, target).value();
     ASSERT_TRUE(least.meets_target);
     ASSERT_LT(8 * least.stream.size(), mesh.triangles.size()) << "too fine to be judged by one look";

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -24,8 +25,14 @@ struct Strip {
     }
   }
   DeviationBound Bound(double farthest, std::vector<uint32_t> groups = {}) const {
-    groups.resize(triangles.size(), 0);
-    return DeviationBound(positions, triangles, std::move(groups), farthest);
+    auto samples = std::make_shared<const DeviationSamples>(positions, triangles, groups, farthest);
+    return DeviationBound(std::move(samples), triangles.size(), std::move(groups));
+  }
+  // Of the strip as it was `below` itself.
+  DeviationBound BoundOfLower(double farthest, float below) const {
+    TriangleMesh lower{{}, triangles};
+    for (const Vec3d& p : positions) lower.positions.push_back(Vec3Cast<float>(p) - Vec3f{0, 0, below});
+    return DeviationBound(std::make_shared<const DeviationSamples>(positions, triangles, std::vector<uint32_t>(), farthest), lower);
   }
 };
 
@@ -61,6 +68,23 @@ TEST(DeviationBoundTest, DistancesAreThoseFromTheOriginal) {
   EXPECT_EQ(num_steps, 2);
   // What was not accepted changes nothing.
   EXPECT_TRUE(bound.Allows({2, 0, 0}, Joined(strip)));
+}
+
+TEST(DeviationBoundTest, WhatIsFarFromTheOriginalMayStayButGoNoFarther) {
+  const Strip strip(2);
+  const auto allows = [&](double farthest, float below, double to) {
+    Faces faces = Joined(strip);
+    for (DeviationBound::Face& face : faces) face.a.z = face.b.z = -static_cast<double>(below);
+    return strip.BoundOfLower(farthest, below).Allows({2, 0, to}, faces);
+  };
+  EXPECT_TRUE(allows(0.3, 0.25f, -0.25));
+  EXPECT_TRUE(allows(0.3, 0.25f, -0.29));
+  EXPECT_FALSE(allows(0.3, 0.25f, -0.4));
+  // Triangles as large as those are looked at, too, and are too far off.
+  EXPECT_FALSE(allows(0.2, 0.25f, -0.25));
+  constexpr double kSmall = 4;  // bounds, which no side is longer than
+  EXPECT_TRUE(allows(kSmall, 4.5f, -4.5));
+  EXPECT_FALSE(allows(kSmall, 4.5f, -5.5));
 }
 
 TEST(DeviationBoundTest, GroupsCoverThemselves) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <memory>
+#include <vector>
 
 #include "lacerta/surface_distance.h"
 #include "remesh/mesh_fit.h"
@@ -60,6 +62,23 @@ TEST(FittedSimplificationTest, LargerMeshesAreOfTheSequence) {
   EXPECT_TRUE(AreEqual(fitted.MeshWith(1601), sequence.MeshWith(1601)));
   EXPECT_TRUE(AreEqual(fitted.MeshWith(100000), sequence.MeshWith(100000)));
   EXPECT_FALSE(AreEqual(fitted.MeshWith(1600), sequence.MeshWith(1600)));  // fitted, and simplified from there
+}
+
+// As far as the collapses of the input and those of what was fitted go.
+TEST(FittedSimplificationTest, NothingGoesFartherThanTheSequenceAllows) {
+  const TriangleMesh mesh = shapes::WithStick(shapes::BumpySphere(5, 0.2f), 0.003f, 0.3f);
+  std::vector<Vec3d> positions;
+  for (const Vec3f& p : mesh.positions) positions.push_back(Vec3Cast<double>(p));
+  constexpr double kFarthest = 0.03;
+  SimplificationOptions options;
+  options.original = std::make_shared<const DeviationSamples>(positions, mesh.triangles, std::vector<uint32_t>(), kFarthest);
+  const SimplificationSequence free(mesh), bounded(mesh, options);
+  FitTarget target(mesh, 4000);
+  const auto farthest_of = [&](const SimplificationSequence& sequence) {
+    return MeasureSurfaceDistance(mesh, FittedSimplification(sequence, kOptions, &target).MeshWith(200)).value().Hausdorff();
+  };
+  EXPECT_GT(farthest_of(free), 1.8 * kFarthest);
+  EXPECT_LT(farthest_of(bounded), 1.6 * kFarthest);  // fits move it on
 }
 
 TEST(FittedSimplificationTest, GoesAsFarAsCollapsesGo) {

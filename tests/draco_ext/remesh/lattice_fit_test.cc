@@ -26,7 +26,7 @@ class LatticeFitTest : public ::testing::Test {
 
   LatticeMesh Fit(const RateModel& rate) const {
     const MeshNeighbors neighbors(fitted_);
-    return FitToLattice(fitted_, target_.ModelAt(fitted_, neighbors), neighbors, rate);
+    return FitToLattice(target_, fitted_, target_.ModelAt(fitted_, neighbors), neighbors, rate);
   }
 
   TriangleMesh mesh_;
@@ -98,7 +98,24 @@ TEST(LatticeFit, TurnsBackWhatRoundingTurnedOver) {
   }
   EXPECT_EQ(num_folded(mesh), 0);
   EXPECT_GT(num_folded(rounded), 10);
-  EXPECT_LE(num_folded(FitToLattice(mesh, target.ModelAt(mesh, neighbors), neighbors, {step, 1e-7}).ToMesh()), num_folded(rounded) / 5);
+  EXPECT_LE(num_folded(FitToLattice(target, mesh, target.ModelAt(mesh, neighbors), neighbors, {step, 1e-7}).ToMesh()), num_folded(rounded) / 5);
+}
+
+// For dear bits vertices come to parallelograms that the surface has not.
+TEST_F(LatticeFitTest, NoVertexGoesFartherThanTheTargetAllows) {
+  const MeshNeighbors neighbors(fitted_);
+  const RateModel rate{0.02, 1e-3};
+  const auto farthest_within = [&](double farthest) {
+    const FitTarget target(mesh_, 10000, farthest);
+    double squared = 0;
+    uint32_t hint = SurfacePoint::kNone;
+    for (const Vec3f& p : FitToLattice(target, fitted_, target.ModelAt(fitted_, neighbors), neighbors, rate).ToMesh().positions) {
+      squared = std::max(squared, target.SquaredDistance(p, &hint));
+    }
+    return std::sqrt(squared);
+  };
+  EXPECT_GT(farthest_within(0), 0.04);
+  EXPECT_LE(farthest_within(0.02), 0.02);
 }
 
 TEST_F(LatticeFitTest, BitsAreSavedWhereTheyWeigh) {

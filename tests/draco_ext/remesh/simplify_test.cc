@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -30,6 +31,12 @@ double Area(const TriangleMesh& mesh) {
     area += Norm(Cross(Vec3Cast<double>(mesh.positions[t[1]]) - a, Vec3Cast<double>(mesh.positions[t[2]]) - a)) / 2;
   }
   return area;
+}
+
+std::shared_ptr<const DeviationSamples> SamplesOf(const TriangleMesh& mesh, double farthest) {
+  std::vector<Vec3d> positions;
+  for (const Vec3f& p : mesh.positions) positions.push_back(Vec3Cast<double>(p));
+  return std::make_shared<const DeviationSamples>(positions, mesh.triangles, std::vector<uint32_t>(), farthest);
 }
 
 void ExpectSound(const TriangleMesh& mesh) {
@@ -157,7 +164,9 @@ TEST(SimplifyTest, HeldVerticesStay) {
   }
   const auto is_held = [&](const Vec3f& p) { return held_positions.count({p.x, p.y, p.z}) == 1; };
   ASSERT_GT(held_positions.size(), 100u);
-  const SimplificationSequence sequence(mesh, held);
+  SimplificationOptions options;
+  options.held = held;
+  const SimplificationSequence sequence(mesh, options);
   EXPECT_LT(sequence.fewest_triangles(), mesh.triangles.size() / 4);
   for (const uint32_t wanted : {4000u, 2000u, 0u}) {
     const TriangleMesh simplified = sequence.MeshWith(wanted);
@@ -170,6 +179,33 @@ TEST(SimplifyTest, HeldVerticesStay) {
     const auto before = held_edges(mesh, is_held), after = held_edges(simplified, is_held);
     EXPECT_TRUE(std::includes(after.begin(), after.end(), before.begin(), before.end()));
   }
+}
+
+// A thin stick is soon a short one, at hardly any cost in the mean.
+TEST(SimplifyTest, NothingGoesFartherThanTheOriginalAllows) {
+  const TriangleMesh mesh = shapes::WithStick(shapes::BumpySphere(4, 0.2f), 0.003f, 0.3f);
+  const auto farthest_within = [&](double bound) {
+    SimplificationOptions options;
+    if (bound > 0) options.original = SamplesOf(mesh, bound);
+    return MeasureSurfaceDistance(mesh, SimplificationSequence(mesh, options).MeshWith(100)).value().Hausdorff();
+  };
+  EXPECT_GT(farthest_within(0), 0.1);
+  for (const double bound : {0.02, 0.05}) {
+    EXPECT_LT(farthest_within(bound), 1.3 * bound);
+    EXPECT_GT(farthest_within(bound), 0.7 * bound);
+  }
+}
+
+TEST(SimplifyTest, EndsWhereNoMoreIsAskedFor) {
+  const TriangleMesh mesh = shapes::BumpySphere(4, 0.2f);
+  SimplificationOptions options;
+  options.fewest_triangles = 1000;
+  const SimplificationSequence all(mesh), some(mesh, options);
+  EXPECT_LE(some.fewest_triangles(), 1000u);
+  EXPECT_GE(some.fewest_triangles(), 998u);
+  EXPECT_LT(all.fewest_triangles(), 10u);
+  EXPECT_EQ(some.MeshWith(2000).positions, all.MeshWith(2000).positions);
+  EXPECT_EQ(some.MeshWith(0).triangles, all.MeshWith(1000).triangles);
 }
 
 TEST(SimplifyTest, DependsNeitherOnPlaceNorOnSize) {
