@@ -40,7 +40,7 @@ bool DeviationSamples::IsNear(const Vec3d& point) const { return tree_.IsNear(Ve
 uint32_t DeviationSamples::StepsAlong(const std::array<Vec3d, 3>& t) const {
   constexpr double kApart = 4, kMost = 4;  // bounds, between samples; steps, however large the triangle
   const double longest = std::max({Norm(t[1] - t[0]), Norm(t[2] - t[1]), Norm(t[0] - t[2])});
-  return static_cast<uint32_t>(std::clamp(std::ceil(longest / (kApart * farthest_)), 1.0, kMost));
+  return longest <= kApart * farthest_ ? 1 : static_cast<uint32_t>(std::min(std::ceil(longest / (kApart * farthest_)), kMost));
 }
 
 void DeviationSamples::Add(const Vec3d& position, uint32_t triangle) {
