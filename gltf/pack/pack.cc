@@ -228,7 +228,8 @@ std::string DescribeMissingLevels(const std::vector<PrimitiveReport>& reports) {
 }
 
 // The document with the geometry that the plans have for it.
-StatusOr<PackResult> StorePlans(GltfDocument document, const std::vector<PrimitivePlan>& plans, const PackOptions& options) {
+StatusOr<PackResult> StorePlans(GltfDocument document, std::vector<PrimitivePlan> plans, const PackOptions& options) {
+  for (PrimitivePlan& plan : plans) LACERTA_RETURN_IF_ERROR(TakeAsDracoIfThatIsAll(options.fallback, &plan));
   std::set<uint64_t> unused_views = DracoViews(document);
   std::vector<Place> geometries;
   for (const PrimitivePlan& plan : plans) {
@@ -266,16 +267,16 @@ StatusOr<PackResult> PackDocument(GltfDocument document, const PackOptions& opti
   if (UsesExtension(document.json, kProgressiveName)) {
     return Unsupported("the asset is packed already; unpack it first, or pack the original, which loses less");
   }
-  LACERTA_ASSIGN_OR_RETURN(const std::vector<PrimitivePlan> plans, PlanPrimitives(document, options));
+  LACERTA_ASSIGN_OR_RETURN(std::vector<PrimitivePlan> plans, PlanPrimitives(document, options));
   std::vector<std::string> notes;
   if (const std::string unused = DescribeUnused(document); !unused.empty()) notes.push_back(unused + (options.drop_unused ? "; dropped" : "; kept, --drop-unused drops it"));
-  return WithNotes(StorePlans(std::move(document), plans, options), notes);
+  return WithNotes(StorePlans(std::move(document), std::move(plans), options), notes);
 }
 
 StatusOr<PackResult> PackLargeShape(FileMesh mesh, const std::string& name, const PackOptions& options) {
   LACERTA_RETURN_IF_ERROR(CheckOptions(options));
   LACERTA_ASSIGN_OR_RETURN(LargeShape shape, PlanLargeShape(std::move(mesh), name, options));
-  return StorePlans(std::move(shape.document), shape.plans, options);
+  return StorePlans(std::move(shape.document), std::move(shape.plans), options);
 }
 
 }  // namespace

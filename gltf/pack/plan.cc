@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "document/draco_primitive.h"
 #include "geometry/for_each_branch.h"
 #include "lacerta/surface_distance.h"
 #include "pack/family_plan.h"
@@ -237,6 +238,25 @@ void TakeStream(EncodedMesh encoded, const EncodeTarget& target, PrimitivePlan* 
       break;
   }
   plan->progressive = std::move(encoded);
+}
+
+bool IsAllInDraco(const EncodedMesh& encoded, bool smooth_normals, Fallback fallback) {
+  return fallback == Fallback::kDraco && encoded.part_sizes.size() == 1 && !smooth_normals;
+}
+
+Status TakeAsDracoIfThatIsAll(Fallback fallback, PrimitivePlan* plan) {
+  if (!plan->progressive || !IsAllInDraco(*plan->progressive, plan->smooth_normals, fallback)) return Status();
+  Bytes& stream = plan->progressive->stream;
+  DracoEncoded encoded;
+  LACERTA_ASSIGN_OR_RETURN(const uint32_t id, DracoPositionId(stream));
+  encoded.ids = {{"POSITION", id}};
+  LACERTA_ASSIGN_OR_RETURN(encoded.decoded, DecodeDracoPrimitive(stream, encoded.ids, DecodeLimits{}));
+  encoded.bytes = std::move(stream);
+  plan->report.storage = PrimitiveStorage::kDraco;
+  plan->report.error = plan->report.encode.levels.back().error;
+  plan->draco = std::move(encoded);
+  plan->progressive.reset();
+  return Status();
 }
 
 StatusOr<std::vector<PrimitivePlan>> PlanPrimitives(const GltfDocument& document, const PackOptions& options) {

@@ -81,14 +81,12 @@ bool MissesTarget(const EncodeTarget& target, const PackReport& report) {
   constexpr double kRounding = 1e-6;
   double bytes = 0.0;
   for (const PrimitiveReport& primitive : report.primitives) {
-    const bool progressive = primitive.storage == PrimitiveStorage::kProgressive;
     bytes += static_cast<double>(primitive.bytes_after);
     if (target.kind == EncodeTarget::Kind::kBytes) continue;  // the whole file's
     if (target.kind == EncodeTarget::Kind::kBitsPerVertex) {
-      if (progressive && MissesTarget(target, primitive.encode)) return true;
+      if (MissesTarget(target, primitive.encode)) return true;
     } else if (primitive.storage != PrimitiveStorage::kUntouched) {
-      const double error =
-          progressive && !primitive.encode.levels.empty() ? primitive.encode.levels.back().error : primitive.error;
+      const double error = primitive.encode.levels.empty() ? primitive.error : primitive.encode.levels.back().error;
       if (error > primitive.target_error * (1.0 + kRounding)) return true;
     }
   }
@@ -116,8 +114,11 @@ void PrintPackReport(const PackArguments& arguments, const PackReport& report, u
                 StorageName(primitive.storage), static_cast<unsigned long long>(primitive.bytes_before),
                 static_cast<unsigned long long>(primitive.bytes_after), primitive.reason.empty() ? "" : "; ",
                 primitive.reason.c_str());
-    if (primitive.storage == PrimitiveStorage::kProgressive) PrintLevels(primitive.encode);
-    if (primitive.storage == PrimitiveStorage::kDraco) PrintPrecision(primitive);
+    if (!primitive.encode.levels.empty()) {
+      PrintLevels(primitive.encode);
+    } else if (primitive.storage == PrimitiveStorage::kDraco) {
+      PrintPrecision(primitive);
+    }
   }
   for (const std::string& note : report.notes) std::printf("note: %s\n", note.c_str());
   std::printf("%s: %llu -> %llu bytes\n", arguments.output.c_str(), static_cast<unsigned long long>(before),

@@ -55,8 +55,9 @@ Json ToJson(const PackReport& report) {
                  {"reason", primitive.reason},
                  {"bytesBefore", primitive.bytes_before},
                  {"bytesAfter", primitive.bytes_after}};
-    if (primitive.storage == PrimitiveStorage::kProgressive) json["encode"] = ToJson(primitive.encode);
-    const bool is_draco = primitive.storage == PrimitiveStorage::kDraco;
+    const bool is_stream = !primitive.encode.levels.empty();
+    if (is_stream) json["encode"] = ToJson(primitive.encode);
+    const bool is_draco = primitive.storage == PrimitiveStorage::kDraco && !is_stream;
     if (is_draco || !primitive.attributes.empty()) {
       json["error"] = NumberOrNull(primitive.error);
       json["targetError"] = NumberOrNull(primitive.target_error);

@@ -100,7 +100,7 @@ struct PrimitiveReport {
   std::string reason;         // why it is not progressive, or what EncodeMesh had to say; else empty
   uint64_t bytes_before = 0;  // of its attributes, indices and morph targets, as often as the asset holds them
   uint64_t bytes_after = 0;
-  EncodeReport encode;  // of progressive ones; where several share a stream, of all of it with each
+  EncodeReport encode;  // of streams of ours, in Draco or progressive; where several share one, of all of it with each; else without levels
   // Of those stored as Draco or with attributes: measured d_S in mesh units (over all primitives that touch it and share its lattice), what
   // was asked for, and the bits of a position.
   double error = 0.0;

@@ -502,6 +502,39 @@ TEST(Pack, NothingGrowsByItsDescription) {
   }
 }
 
+// There is nothing to refine, and stock readers show all of it; but who is to derive normals has to be told so.
+TEST(Pack, StreamsWithoutLevelsAreStockDraco) {
+  const TriangleMesh ball = WavySphere(40, 64);
+  AssetBuilder builder;
+  builder.AddMesh("bare", Json::array({builder.Primitive(ball)}));
+  Json smooth = builder.Primitive(WavySphere(40, 64, {3, 0, 0}));
+  smooth["attributes"]["NORMAL"] = builder.AddFloats(SmoothNormals(ball.positions, ball.triangles), false);
+  builder.AddMesh("smooth", Json::array({smooth}));
+  PackOptions options;
+  options.encode.target = {EncodeTarget::Kind::kPsnr, 60.0};
+  options.encode.levels = LevelChoice::kNever;
+  options.attributes.normal_degrees = 10.0;
+  const PackResult packed = PackGltf(builder.Glb(), options).value();
+  const GltfDocument document = ParseGltf(packed.glb, "").value();
+  const Json& bare = document.json["meshes"][0]["primitives"][0]["extensions"];
+  EXPECT_TRUE(bare.contains(kDracoName));
+  EXPECT_FALSE(bare.contains(kProgressiveName));
+  const PrimitiveReport& report = packed.report.primitives[0];
+  EXPECT_EQ(report.storage, PrimitiveStorage::kDraco);
+  ASSERT_EQ(report.encode.levels.size(), 1u);
+  EXPECT_EQ(report.error, report.encode.levels[0].error);
+  EXPECT_LE(report.error, report.target_error);
+  const Json& position = document.json["accessors"][document.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].get<size_t>()];
+  EXPECT_EQ(position["count"], report.encode.levels[0].vertices);
+  ASSERT_EQ(packed.report.primitives[1].storage, PrimitiveStorage::kProgressive) << packed.report.primitives[1].reason;
+  const Progressive progressive = ParseProgressive(document).value();
+  ASSERT_EQ(progressive.streams.size(), 1u);
+  EXPECT_TRUE(progressive.streams[0].smooth_normals);
+  // Only where Draco shows it.
+  options.fallback = Fallback::kPlain;
+  EXPECT_EQ(PackGltf(builder.Glb(), options).value().report.primitives[0].storage, PrimitiveStorage::kProgressive);
+}
+
 // The same ball with bounds that normals derived from its stream meet, and that they do not.
 TEST(Pack, DerivedNormalsAreHeldToTheirTarget) {
   const TriangleMesh ball = WavySphere(40, 64);
