@@ -100,7 +100,7 @@ struct PrimitiveReport {
   std::string reason;         // why it is not progressive, or what EncodeMesh had to say; else empty
   uint64_t bytes_before = 0;  // of its attributes, indices and morph targets, as often as the asset holds them
   uint64_t bytes_after = 0;
-  EncodeReport encode;  // of streams of ours, in Draco or progressive; where several share one, of all of it with each; else without levels
+  EncodeReport encode;  // of what EncodeMesh made, and of streams with attributes (where several share one, of all of it with each); else it has no levels
   // Of those stored as Draco or with attributes: measured d_S in mesh units (over all primitives that touch it and share its lattice), what
   // was asked for, and the bits of a position.
   double error = 0.0;
@@ -121,7 +121,7 @@ struct PackResult {
 };
 
 // Packs a .glb or .gltf. Every mesh of one primitive with positions only (and normals that can be derived from them)
-// becomes progressive; so do surfaces with attributes, all primitives that touch in one stream, where that is smaller (or
+// becomes progressive, or plain Draco where it has no levels and the fallback is Draco; so do surfaces with attributes, all primitives that touch in one stream, where that is smaller (or
 // levels are always wanted). Other triangles are stored as KHR_draco_mesh_compression, and what neither can hold stays as
 // it was, each with its reason in the report. Normals of flat shading go from what is stored anew: their absence means the same. All else
 // in the asset passes through: nodes, materials, images byte for byte, animations, skins, extras, unknown extensions. Fails with
