@@ -233,7 +233,7 @@ Status PlanTogether(const FamilyContext& context, bool may_be_shape, std::vector
   if (is_stream && always_stream) return Status();
   uint64_t least = context.BytesBefore();
   if (is_stream) {
-    const bool is_described = !IsAllInDraco(*first.progressive, first.smooth_normals, context.options->fallback);
+    const bool is_described = !IsAllInDraco(*first.progressive, first.smooth_normals, *context.options);
     const uint64_t bytes = first.progressive->stream.size() + context.DracoJsonBytes() + (is_described ? context.ProgressiveJsonBytes() : 0);
     if (bytes >= least) {
       LeaveAsItIs(context, bytes, &first);

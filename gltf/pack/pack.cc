@@ -229,7 +229,7 @@ std::string DescribeMissingLevels(const std::vector<PrimitiveReport>& reports) {
 
 // The document with the geometry that the plans have for it.
 StatusOr<PackResult> StorePlans(GltfDocument document, std::vector<PrimitivePlan> plans, const PackOptions& options) {
-  for (PrimitivePlan& plan : plans) LACERTA_RETURN_IF_ERROR(TakeAsDracoIfThatIsAll(options.fallback, &plan));
+  for (PrimitivePlan& plan : plans) LACERTA_RETURN_IF_ERROR(TakeAsDracoIfThatIsAll(options, &plan));
   std::set<uint64_t> unused_views = DracoViews(document);
   std::vector<Place> geometries;
   for (const PrimitivePlan& plan : plans) {

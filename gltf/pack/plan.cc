@@ -240,12 +240,13 @@ void TakeStream(EncodedMesh encoded, const EncodeTarget& target, PrimitivePlan* 
   plan->progressive = std::move(encoded);
 }
 
-bool IsAllInDraco(const EncodedMesh& encoded, bool smooth_normals, Fallback fallback) {
-  return fallback == Fallback::kDraco && encoded.part_sizes.size() == 1 && !smooth_normals;
+bool IsAllInDraco(const EncodedMesh& encoded, bool smooth_normals, const PackOptions& options) {
+  const bool is_wanted = options.fallback == Fallback::kDraco && options.encode.levels != LevelChoice::kAlways;
+  return is_wanted && encoded.part_sizes.size() == 1 && !smooth_normals;
 }
 
-Status TakeAsDracoIfThatIsAll(Fallback fallback, PrimitivePlan* plan) {
-  if (!plan->progressive || !IsAllInDraco(*plan->progressive, plan->smooth_normals, fallback)) return Status();
+Status TakeAsDracoIfThatIsAll(const PackOptions& options, PrimitivePlan* plan) {
+  if (!plan->progressive || !IsAllInDraco(*plan->progressive, plan->smooth_normals, options)) return Status();
   Bytes& stream = plan->progressive->stream;
   DracoEncoded encoded;
   LACERTA_ASSIGN_OR_RETURN(const uint32_t id, DracoPositionId(stream));

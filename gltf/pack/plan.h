@@ -36,10 +36,10 @@ struct PrimitivePlan {
 // Makes a stream of the shape alone the plan. target: what it was encoded for, not a share of a scene.
 void TakeStream(EncodedMesh encoded, const EncodeTarget& target, PrimitivePlan* plan);
 
-// Whether a stream of the shape alone is stock Draco, with nothing to refine and nothing to tell that Draco does not.
-bool IsAllInDraco(const EncodedMesh& encoded, bool smooth_normals, Fallback fallback);
+// Whether a stream of the shape alone is stock Draco, with nothing to refine and nothing to tell that Draco does not, and is not asked for as a stream.
+bool IsAllInDraco(const EncodedMesh& encoded, bool smooth_normals, const PackOptions& options);
 // Makes such a stream what stock Draco is: its description would be a sixth of a small file. Others stay.
-Status TakeAsDracoIfThatIsAll(Fallback fallback, PrimitivePlan* plan);
+Status TakeAsDracoIfThatIsAll(const PackOptions& options, PrimitivePlan* plan);
 
 // Reads and encodes all primitives. Fails like PackGltf.
 StatusOr<std::vector<PrimitivePlan>> PlanPrimitives(const GltfDocument& document, const PackOptions& options);

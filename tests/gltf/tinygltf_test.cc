@@ -50,7 +50,7 @@ Bytes Scene() {
   smooth["attributes"]["NORMAL"] = builder.AddFloats(SmoothNormals(ball.positions, ball.triangles), false);
   builder.AddMesh("smooth", Json::array({smooth}));
   builder.AddMesh("twin", Json::array({smooth}));
-  builder.AddMesh("flat", Json::array({builder.Primitive(WavySphere(14, 20, {4, 0, 0}))}));
+  builder.AddMesh("flat", Json::array({builder.Primitive(WavySphere(12, 16, {4, 0, 0}))}));
   const TriangleMesh points = WavySphere(3, 4);
   Json cloud = {{"attributes", {{"POSITION", builder.AddFloats(points.positions, true)}}}, {"mode", 0}};
   builder.AddMesh("cloud", Json::array({cloud}));

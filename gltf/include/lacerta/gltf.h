@@ -121,7 +121,7 @@ struct PackResult {
 };
 
 // Packs a .glb or .gltf. Every mesh of one primitive with positions only (and normals that can be derived from them)
-// becomes progressive, or plain Draco where it has no levels and the fallback is Draco; so do surfaces with attributes, all primitives that touch in one stream, where that is smaller (or
+// becomes progressive, or plain Draco where it has no levels, need not have any, and the fallback is Draco; so do surfaces with attributes, all primitives that touch in one stream, where that is smaller (or
 // levels are always wanted). Other triangles are stored as KHR_draco_mesh_compression, and what neither can hold stays as
 // it was, each with its reason in the report. Normals of flat shading go from what is stored anew: their absence means the same. All else
 // in the asset passes through: nodes, materials, images byte for byte, animations, skins, extras, unknown extensions. Fails with

@@ -535,6 +535,17 @@ TEST(Pack, StreamsWithoutLevelsAreStockDraco) {
   EXPECT_EQ(PackGltf(builder.Glb(), options).value().report.primitives[0].storage, PrimitiveStorage::kProgressive);
 }
 
+// A stream is asked for, which hosts read with ReadProgressive.
+TEST(Pack, WhereLevelsAreAlwaysWantedThereIsAStreamWithoutAnyToo) {
+  PackOptions options;
+  options.encode.target = {EncodeTarget::Kind::kPsnr, 50.0};
+  options.encode.levels = LevelChoice::kAlways;
+  const PackResult packed = PackMesh(WavySphere(8, 12), "small", options).value();
+  EXPECT_EQ(packed.report.primitives[0].storage, PrimitiveStorage::kProgressive);
+  EXPECT_EQ(packed.report.primitives[0].encode.levels.size(), 1u);
+  EXPECT_EQ(ParseProgressive(ParseGltf(packed.glb, "").value()).value().streams.size(), 1u);
+}
+
 // The same ball with bounds that normals derived from its stream meet, and that they do not.
 TEST(Pack, DerivedNormalsAreHeldToTheirTarget) {
   const TriangleMesh ball = WavySphere(40, 64);
