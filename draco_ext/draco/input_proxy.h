@@ -31,9 +31,9 @@ struct InputProxyOptions {
 
 // The input, simplified to as few triangles as the options allow, by powers of two; none where that does not halve them, unless
 // there are more than most_triangles, nor where there are more components than it may have triangles.
-//   cleaned  what Clean returned of the input
-//   meter    of the input
-//   target   of the stream
+//   cleaned    what Clean returned of the input
+//   meter      of the input
+//   target     of the stream
 //   is_coarse  may be null; whether it is farther from the input than the options allow, for want of triangles
 std::optional<TriangleMesh> InputProxy(const TriangleMesh& cleaned, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                        const InputProxyOptions& options = {}, bool* is_coarse = nullptr);

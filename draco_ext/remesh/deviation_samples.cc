@@ -20,6 +20,17 @@ TriangleMesh ToMesh(const std::vector<Vec3d>& positions, const std::vector<Trian
 DeviationSamples::DeviationSamples(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles, const std::vector<uint32_t>& groups,
                                    double farthest)
     : farthest_(farthest), tree_(ToMesh(positions, triangles)) {
+  Take(positions, triangles, groups);
+}
+
+DeviationSamples::DeviationSamples(const TriangleMesh& surface, double farthest) : farthest_(farthest), tree_(surface) {
+  std::vector<Vec3d> positions;
+  positions.reserve(surface.positions.size());
+  for (const Vec3f& p : surface.positions) positions.push_back(Vec3Cast<double>(p));
+  Take(positions, surface.triangles, {});
+}
+
+void DeviationSamples::Take(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles, const std::vector<uint32_t>& groups) {
   constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
   std::vector<uint32_t> last_group(positions.size(), kNone);
   for (uint32_t f = 0; f < triangles.size(); ++f) {

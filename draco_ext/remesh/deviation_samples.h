@@ -21,6 +21,8 @@ class DeviationSamples {
   // positions: #V, within TriangleTree::kMaxCoordinate. groups: #F, of the triangles; empty: they are in one. farthest: how far any point may be, units of
   // the positions, > 0.
   DeviationSamples(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles, const std::vector<uint32_t>& groups, double farthest);
+  // Of a surface in one group.
+  DeviationSamples(const TriangleMesh& surface, double farthest);
 
   double farthest() const { return farthest_; }
   uint32_t size() const { return static_cast<uint32_t>(positions_.size()); }
@@ -32,6 +34,7 @@ class DeviationSamples {
   bool IsLarge(const std::array<Vec3d, 3>& corners) const { return StepsAlong(corners) > 1; }
 
  private:
+  void Take(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles, const std::vector<uint32_t>& groups);
   uint32_t StepsAlong(const std::array<Vec3d, 3>& corners) const;
   void Add(const Vec3d& position, uint32_t triangle);
 

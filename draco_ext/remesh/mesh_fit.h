@@ -46,8 +46,8 @@ struct LatticeMesh {
 LatticeMesh NearestOnLattice(const TriangleMesh& mesh, double step);
 
 // Rounds `mesh`, at which the target's `model` was made, to the lattice of step rate.step: each vertex in turn to the point near it that is best
-// by the model and the bits, in a few sweeps; what is farther than the target allows costs more. The lattice begins at the lower corner of the mesh. step: > 0, and at least 2^-23 of
-// the largest side of the mesh.
+// by the model and the bits, in a few sweeps; what is farther than the target allows costs more. The lattice begins at the lower corner of the mesh.
+// step: > 0, and at least 2^-23 of the largest side of the mesh.
 LatticeMesh FitToLattice(const FitTarget& target, const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate);
 
 }  // namespace lacerta

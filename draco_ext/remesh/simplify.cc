@@ -97,7 +97,7 @@ class Simplifier {
   std::vector<uint32_t> ring_;    // corners of the vertex that is looked at
   std::vector<uint32_t> killed_;  // triangles, by the collapse that is made
   FoldedSpokes spokes_;
-  std::optional<DeviationBound> deviation_;    // in model units
+  std::optional<DeviationBound> deviation_;  // in model units
   std::vector<DeviationBound::Face> faces_;  // of the collapse that is looked at
 };
 

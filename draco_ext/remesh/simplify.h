@@ -15,7 +15,7 @@ namespace lacerta {
 
 struct SimplificationOptions {
   std::vector<uint8_t> held;  // for each vertex 1 where it stays with its edges to others that are held, exactly; else 0. Empty: none
-  // What the mesh was made of, or the mesh itself: no collapse takes a point farther from it than these allow. Null: any distance.
+  // What the mesh was made of, or the mesh itself: no collapse takes a point farther from it than these allow, nor than it is where that is farther. Null: any distance.
   std::shared_ptr<const DeviationSamples> original;
   uint32_t fewest_triangles = 0;  // where it ends
 };

@@ -118,4 +118,12 @@ StatusOr<uint32_t> DracoPositionId(Span<const uint8_t> bytes) {
   return position->unique_id();
 }
 
+StatusOr<DracoShape> DecodeDracoShape(Span<const uint8_t> bytes) {
+  DracoShape shape;
+  LACERTA_ASSIGN_OR_RETURN(const uint32_t id, DracoPositionId(bytes));
+  shape.ids = {{"POSITION", id}};
+  LACERTA_ASSIGN_OR_RETURN(shape.primitive, DecodeDracoPrimitive(bytes, shape.ids, DecodeLimits{}));
+  return shape;
+}
+
 }  // namespace lacerta

@@ -28,6 +28,13 @@ StatusOr<std::vector<std::string>> DracoAttributeKinds(Span<const uint8_t> bytes
 // The unique id of the position attribute of a stock stream.
 StatusOr<uint32_t> DracoPositionId(Span<const uint8_t> bytes);
 
+// The positions and triangles of a stock stream.
+struct DracoShape {
+  std::vector<DracoAttributeId> ids;  // of POSITION alone
+  Primitive primitive;
+};
+StatusOr<DracoShape> DecodeDracoShape(Span<const uint8_t> bytes);
+
 }  // namespace lacerta
 
 #endif  // LACERTA_DOCUMENT_DRACO_PRIMITIVE_H_

@@ -23,14 +23,18 @@
 namespace lacerta {
 namespace {
 
+Json DracoReference(uint64_t view, const std::vector<DracoAttributeId>& attributes) {
+  Json ids = Json::object();
+  for (const DracoAttributeId& id : attributes) ids[id.name] = id.id;
+  return {{"bufferView", view}, {"attributes", std::move(ids)}};
+}
+
 void StoreDraco(const PrimitivePlan& plan, AccessorPool* pool, GltfDocument* document) {
   const DracoEncoded& encoded = *plan.draco;
   NewGeometry geometry = DescribedGeometry(encoded.decoded);
   geometry.targets = TargetAccessors(plan.targets, document);
-  Json ids = Json::object();
-  for (const DracoAttributeId& id : encoded.ids) ids[id.name] = id.id;
   const uint64_t view = AddBufferView(AddBuffer(encoded.bytes, document), 0, encoded.bytes.size(), document);
-  geometry.extensions[kDracoName] = {{"bufferView", view}, {"attributes", std::move(ids)}};
+  geometry.extensions[kDracoName] = DracoReference(view, encoded.ids);
   ReplaceGeometry(plan.geometries, plan.places, std::move(geometry), pool, document);
 }
 
@@ -126,11 +130,10 @@ StatusOr<NewGeometry> DracoFallback(const EncodedMesh& encoded, uint64_t data_bu
                                     GltfDocument* document) {
   const uint64_t length = encoded.part_sizes[0];
   const Span<const uint8_t> base = Span<const uint8_t>(encoded.stream).First(static_cast<size_t>(length));
-  LACERTA_ASSIGN_OR_RETURN(const uint32_t id, DracoPositionId(base));
-  LACERTA_ASSIGN_OR_RETURN(const Primitive primitive, DecodeDracoPrimitive(base, {{"POSITION", id}}, DecodeLimits{}));
-  NewGeometry geometry = DescribedGeometry(Surface(primitive));
+  LACERTA_ASSIGN_OR_RETURN(const DracoShape shape, DecodeDracoShape(base));
+  NewGeometry geometry = DescribedGeometry(shape.primitive);
   const uint64_t view = AddBufferView(data_buffer, offset, length, document);
-  geometry.extensions[kDracoName] = {{"bufferView", view}, {"attributes", {{"POSITION", id}}}};
+  geometry.extensions[kDracoName] = DracoReference(view, shape.ids);
   return geometry;
 }
 
@@ -139,10 +142,8 @@ NewGeometry GroupFallback(const FamilyStream& family, size_t group, uint64_t dat
                           GltfDocument* document) {
   NewGeometry geometry = DescribedGeometry(family.groups[group].base);
   geometry.targets = TargetAccessors(family.groups[group].targets, document);
-  Json ids = Json::object();
-  for (const DracoAttributeId& id : family.groups[group].ids) ids[id.name] = id.id;
   const uint64_t view = AddBufferView(data_buffer, offset, family.description.base_lengths[group], document);
-  geometry.extensions[kDracoName] = {{"bufferView", view}, {"attributes", std::move(ids)}};
+  geometry.extensions[kDracoName] = DracoReference(view, family.groups[group].ids);
   return geometry;
 }
 

@@ -248,14 +248,10 @@ bool IsAllInDraco(const EncodedMesh& encoded, bool smooth_normals, const PackOpt
 Status TakeAsDracoIfThatIsAll(const PackOptions& options, PrimitivePlan* plan) {
   if (!plan->progressive || !IsAllInDraco(*plan->progressive, plan->smooth_normals, options)) return Status();
   Bytes& stream = plan->progressive->stream;
-  DracoEncoded encoded;
-  LACERTA_ASSIGN_OR_RETURN(const uint32_t id, DracoPositionId(stream));
-  encoded.ids = {{"POSITION", id}};
-  LACERTA_ASSIGN_OR_RETURN(encoded.decoded, DecodeDracoPrimitive(stream, encoded.ids, DecodeLimits{}));
-  encoded.bytes = std::move(stream);
+  LACERTA_ASSIGN_OR_RETURN(DracoShape shape, DecodeDracoShape(stream));
   plan->report.storage = PrimitiveStorage::kDraco;
   plan->report.error = plan->report.encode.levels.back().error;
-  plan->draco = std::move(encoded);
+  plan->draco = DracoEncoded{std::move(stream), std::move(shape.ids), std::move(shape.primitive), {}};
   plan->progressive.reset();
   return Status();
 }

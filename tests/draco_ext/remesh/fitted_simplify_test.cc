@@ -4,7 +4,6 @@
 
 #include <cstring>
 #include <memory>
-#include <vector>
 
 #include "lacerta/surface_distance.h"
 #include "remesh/mesh_fit.h"
@@ -67,11 +66,9 @@ TEST(FittedSimplificationTest, LargerMeshesAreOfTheSequence) {
 // As far as the collapses of the input and those of what was fitted go.
 TEST(FittedSimplificationTest, NothingGoesFartherThanTheSequenceAllows) {
   const TriangleMesh mesh = shapes::WithStick(shapes::BumpySphere(5, 0.2f), 0.003f, 0.3f);
-  std::vector<Vec3d> positions;
-  for (const Vec3f& p : mesh.positions) positions.push_back(Vec3Cast<double>(p));
   constexpr double kFarthest = 0.03;
   SimplificationOptions options;
-  options.original = std::make_shared<const DeviationSamples>(positions, mesh.triangles, std::vector<uint32_t>(), kFarthest);
+  options.original = std::make_shared<const DeviationSamples>(mesh, kFarthest);
   const SimplificationSequence free(mesh), bounded(mesh, options);
   FitTarget target(mesh, 4000);
   const auto farthest_of = [&](const SimplificationSequence& sequence) {

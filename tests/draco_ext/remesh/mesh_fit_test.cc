@@ -83,12 +83,12 @@ TEST(MeshFitTest, NoVertexGoesFartherThanTheTargetAllows) {
   const TriangleMesh mesh = shapes::BumpySphere(5, 0.2f);
   const RateModel dear{0.02, 1e-3};  // bits, so that the surface shrinks for them
   const auto farthest_within = [&](double farthest) {
-    const FitTarget target(mesh, 10000, farthest), meter(mesh, 100, 1);
+    const FitTarget target(mesh, 10000, farthest);
     TriangleMesh fitted = SimplificationSequence(mesh).MeshWith(400);
     FitToSurface(target, MeshNeighbors(fitted), dear, 3, &fitted);
     double squared = 0;
     uint32_t hint = SurfacePoint::kNone;
-    for (const Vec3f& p : fitted.positions) squared = std::max(squared, meter.SquaredDistance(p, &hint));
+    for (const Vec3f& p : fitted.positions) squared = std::max(squared, target.SquaredDistance(p, &hint));
     return std::sqrt(squared);
   };
   EXPECT_GT(farthest_within(0), 0.05);

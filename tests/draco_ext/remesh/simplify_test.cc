@@ -33,12 +33,6 @@ double Area(const TriangleMesh& mesh) {
   return area;
 }
 
-std::shared_ptr<const DeviationSamples> SamplesOf(const TriangleMesh& mesh, double farthest) {
-  std::vector<Vec3d> positions;
-  for (const Vec3f& p : mesh.positions) positions.push_back(Vec3Cast<double>(p));
-  return std::make_shared<const DeviationSamples>(positions, mesh.triangles, std::vector<uint32_t>(), farthest);
-}
-
 void ExpectSound(const TriangleMesh& mesh) {
   std::vector<bool> used(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
@@ -186,7 +180,7 @@ TEST(SimplifyTest, NothingGoesFartherThanTheOriginalAllows) {
   const TriangleMesh mesh = shapes::WithStick(shapes::BumpySphere(4, 0.2f), 0.003f, 0.3f);
   const auto farthest_within = [&](double bound) {
     SimplificationOptions options;
-    if (bound > 0) options.original = SamplesOf(mesh, bound);
+    if (bound > 0) options.original = std::make_shared<const DeviationSamples>(mesh, bound);
     return MeasureSurfaceDistance(mesh, SimplificationSequence(mesh, options).MeshWith(100)).value().Hausdorff();
   };
   EXPECT_GT(farthest_within(0), 0.1);
