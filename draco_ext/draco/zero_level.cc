@@ -15,6 +15,7 @@
 #include "draco/stock_stream.h"
 #include "encoder/compact_base_encoder.h"
 #include "geometry/bounding_box.h"
+#include "remesh/manifold.h"
 
 namespace lacerta {
 namespace {
@@ -108,8 +109,20 @@ StatusOr<CodedZeroLevel> Encode(const GridMesh& quantized, CodingEffort effort) 
   return result;
 }
 
+// Cut where the mesh is no oriented manifold, with the copies of vertices that this takes.
+StatusOr<BaseMesh> CutToManifold(const LatticeMesh& mesh) {
+  for (size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const Triangle& t = mesh.triangles[f];
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return InvalidData("triangle " + std::to_string(f) + " repeats a vertex");
+  }
+  ManifoldMesh cut = MakeManifold(mesh.ToMesh(), Orientation::kKept);
+  BaseMesh result = {mesh.step, mesh.lattice, std::move(cut.mesh.triangles)};
+  for (size_t v = mesh.lattice.size(); v < cut.source_vertex.size(); ++v) result.lattice.push_back(mesh.lattice[cut.source_vertex[v]]);
+  return result;
+}
+
 StatusOr<CodedZeroLevel> EncodeCompactLattice(const LatticeMesh& mesh, CodingEffort effort) {
-  const BaseMesh base = {mesh.step, mesh.lattice, mesh.triangles};
+  LACERTA_ASSIGN_OR_RETURN(const BaseMesh base, CutToManifold(mesh));
   LACERTA_ASSIGN_OR_RETURN(CompactBaseBytes coded, effort == CodingEffort::kQuick ? EncodeCompactBase(base, mesh.origin)
                                                                                  : EncodeCompactBaseSmallest(base, mesh.origin));
   CodedZeroLevel result;

@@ -30,8 +30,8 @@ enum class CodingEffort {
 StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits);
 
 // The same for a mesh on a lattice of any step: the decoder's step is that one but for rounding. Fails with kInvalidData on a
-// lattice that spans more than 22 bits too. coding: kCompact gives a compact base where the mesh is an oriented manifold without
-// isolated vertices, and a stock stream where it is not.
+// lattice that spans more than 22 bits too. coding: kCompact gives a compact base, cut where the mesh is no manifold, and a stock
+// stream where triangles are degenerate or disagree with their neighbors or a vertex has none.
 StatusOr<CodedZeroLevel> EncodeLatticeMesh(const LatticeMesh& mesh, CodingEffort effort, BaseCoding coding = BaseCoding::kStock);
 
 }  // namespace lacerta

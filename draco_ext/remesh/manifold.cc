@@ -28,6 +28,16 @@ TriangleMesh Flipped(const TriangleMesh& mesh, const std::vector<uint8_t>& flipp
   return result;
 }
 
+// Faces of which one was to be turned over to agree with the other are neighbors no more.
+void TurnNone(FaceNeighbors* neighbors) {
+  std::vector<uint8_t>& flipped = neighbors->flipped;
+  for (uint32_t c = 0; c < neighbors->mate.size(); ++c) {
+    uint32_t& mate = neighbors->mate[c];
+    if (mate != kNone && flipped[c / 3] != flipped[mate / 3]) neighbors->mate[std::exchange(mate, kNone)] = kNone;
+  }
+  std::fill(flipped.begin(), flipped.end(), uint8_t{0});
+}
+
 // The component of every face, over mates.
 std::vector<uint32_t> Components(const std::vector<uint32_t>& mate) {
   std::vector<uint32_t> component(mate.size() / 3, kNone), stack;
@@ -102,9 +112,10 @@ uint64_t CountSplitVertices(size_t num_sources, const std::vector<uint32_t>& sou
 
 }  // namespace
 
-ManifoldMesh MakeManifold(const TriangleMesh& cleaned) {
+ManifoldMesh MakeManifold(const TriangleMesh& cleaned, Orientation orientation) {
   EdgeCorners edges = GroupByEdge(cleaned.positions.size(), cleaned.triangles);
   FaceNeighbors neighbors = FindNeighbors(cleaned, edges);
+  if (orientation == Orientation::kKept) TurnNone(&neighbors);
   ManifoldMesh result;
   result.mesh = Flipped(cleaned, neighbors.flipped, &edges, &neighbors.mate);
   VertexFans fans = SplitVertices(result.mesh, edges, &neighbors.mate);

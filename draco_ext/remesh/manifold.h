@@ -36,6 +36,11 @@ struct ManifoldMesh {
   ManifoldReport report;
 };
 
+enum class Orientation {
+  kMadeToAgree,  // triangles that disagree with their neighbors are turned over
+  kKept,         // no triangle is turned over; those that disagree are no neighbors
+};
+
 // cleaned: what Clean returns (no repeated vertex in a triangle, indices in range); double sheets may be in it.
 //   Orientation: faces are turned to agree with their neighbors so that the lesser area of a component is turned. First
 //     those neighbors are joined that agree already, so where no orientation suits all (Moebius band), the edges that
@@ -45,7 +50,7 @@ struct ManifoldMesh {
 //   The two sides of a double sheet are never neighbors, so its rim is cut.
 //   Vertices of more than 65,534 faces, which no Topology holds, are cut into parts.
 // Which faces are neighbors does not depend on anything but the mesh. O(n log n).
-ManifoldMesh MakeManifold(const TriangleMesh& cleaned);
+ManifoldMesh MakeManifold(const TriangleMesh& cleaned, Orientation orientation = Orientation::kMadeToAgree);
 
 }  // namespace lacerta
 

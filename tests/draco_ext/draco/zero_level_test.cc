@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
+#include "common/position_prediction.h"
 #include "draco/base_mesh_codec.h"
 #include "draco_ext/draco/test_meshes.h"
 
@@ -185,6 +189,49 @@ TEST(ZeroLevelTest, KeepsLatticesOfAnyStep) {
     EXPECT_LE(sizes[1], sizes[0]);
     EXPECT_GT(static_cast<double>(sizes[1]), 0.7 * static_cast<double>(sizes[0]));
   }
+}
+
+// Triangles as lattice points, each from its smallest corner on, sorted.
+std::vector<std::array<LatticePoint, 3>> LatticeTriangles(const std::vector<LatticePoint>& lattice, const std::vector<Triangle>& triangles) {
+  std::vector<std::array<LatticePoint, 3>> result;
+  for (const Triangle& t : triangles) {
+    result.push_back({lattice[t[0]], lattice[t[1]], lattice[t[2]]});
+    std::rotate(result.back().begin(), std::min_element(result.back().begin(), result.back().end()), result.back().end());
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+TEST(ZeroLevelTest, CompactBasesAreCutWhereTheMeshIsNoOrientedManifold) {
+  // Two octahedra that share a vertex, one of them with a fin at one of its edges and a triangle turned over.
+  LatticeMesh mesh;
+  mesh.step = 0.5f;
+  mesh.lattice = {{4, 4, 4}, {12, 4, 4}, {8, 0, 4}, {8, 8, 4}, {8, 4, 0}, {8, 4, 8}, {4, 8, 8}, {0, 4, 4}, {20, 4, 4},
+                  {16, 0, 4}, {16, 8, 4}, {16, 4, 0}, {16, 4, 8}};
+  const auto add = [&](uint32_t left, uint32_t right, uint32_t first) {
+    const uint32_t front = first, back = first + 1, low = first + 2, high = first + 3;
+    for (const auto& [a, b] : {std::pair{front, right}, {right, back}, {back, left}, {left, front}}) {
+      mesh.triangles.push_back({a, b, high});
+      mesh.triangles.push_back({b, a, low});
+    }
+  };
+  add(0, 1, 2);
+  add(1, 8, 9);
+  std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
+  mesh.triangles.push_back({3, 5, 6});
+  mesh.triangles.push_back({6, 5, 7});
+  for (const CodingEffort effort : {CodingEffort::kQuick, CodingEffort::kFull}) {
+    const CodedZeroLevel coded = EncodeLatticeMesh(mesh, effort, BaseCoding::kCompact).value();
+    EXPECT_EQ(coded.coding, BaseCoding::kCompact);
+    const CompactBase decoded = DecodeCompactBase(coded.stream, {}).value();
+    EXPECT_EQ(LatticeTriangles(decoded.mesh.lattice, decoded.mesh.triangles), LatticeTriangles(mesh.lattice, mesh.triangles));
+    EXPECT_TRUE(SameBits(coded.mesh.positions, decoded.ToMesh().positions));
+    EXPECT_EQ(decoded.mesh.lattice.size(), mesh.lattice.size() + 1 + 3 + 2);  // copies: where they touch, of the triangle, of the fin
+    EXPECT_LT(coded.stream.size(), EncodeLatticeMesh(mesh, effort).value().stream.size());
+  }
+  // What no base holds comes as a stock stream.
+  mesh.triangles.push_back({0, 0, 1});
+  EXPECT_EQ(EncodeLatticeMesh(mesh, CodingEffort::kFull, BaseCoding::kCompact).value().coding, BaseCoding::kStock);
 }
 
 TEST(ZeroLevelTest, RefusesLatticesOfMoreThan22Bits) {
