@@ -16,6 +16,7 @@
 #include "draco/base_weights.h"
 #include "draco/merge_values.h"
 #include "draco/mesh_conversion.h"
+#include "draco/recoded_stream.h"
 #include "draco/smallest_predictions.h"
 #include "draco/stock_stream.h"
 
@@ -130,7 +131,7 @@ class GroupEncoder {
     }
     FindPredictions(mesh_, [&](const Predictions& predictions) { return EncodeBy(best_method, predictions); }, &best);
     for (const MarkedLattice& lattice_of : lattices_) LACERTA_RETURN_IF_ERROR(WriteGrid(lattice_of, &best));
-    return best;
+    return RecodeStream(std::move(best));
   }
 
  private:

@@ -14,6 +14,7 @@
 #include "common/subdivision.h"
 #include "lacerta/decoder.h"
 #include "draco/mesh_conversion.h"
+#include "draco/recoded_stream.h"
 #include "draco/smallest_stream.h"
 #include "draco/stock_stream.h"
 #include "encoder/compact_base_encoder.h"
@@ -185,7 +186,8 @@ StatusOr<Bytes> RecodeBaseMesh(const CodedBase& first, const BaseMesh& moved) {
   LACERTA_ASSIGN_OR_RETURN(const IntegerMesh integers, ToIntegerMesh(as_given));
   const StockAttempt attempt{first.traversal.settings, first.traversal.first_triangle, first.traversal.first_corner, {}};
   const auto mesh = ToDracoMesh(StartingAsIn(attempt, integers.mesh));
-  LACERTA_ASSIGN_OR_RETURN(Bytes stream, EncodeIntegerPositions(*mesh, integers.bits, attempt.settings));
+  LACERTA_ASSIGN_OR_RETURN(Bytes written, EncodeIntegerPositions(*mesh, integers.bits, attempt.settings));
+  Bytes stream = RecodeStream(std::move(written));
   LACERTA_RETURN_IF_ERROR(PlaceOnLattice(integers, moved.step, &stream));
   LACERTA_ASSIGN_OR_RETURN(const DecodedBase decoded, DecodeBaseMesh(stream, kNoDecodeLimits));
   LACERTA_ASSIGN_OR_RETURN(const BaseMesh lattice, BaseMeshFromPositions(decoded.mesh, moved.step));

@@ -11,6 +11,7 @@
 #include "lacerta/decoder.h"
 #include "draco/base_mesh_codec.h"
 #include "draco/mesh_conversion.h"
+#include "draco/recoded_stream.h"
 #include "draco/smallest_stream.h"
 #include "draco/stock_stream.h"
 #include "encoder/compact_base_encoder.h"
@@ -81,7 +82,8 @@ bool HoldsTriangles(const Bytes& stream, const std::vector<Corners>& triangles) 
 StatusOr<Bytes> EdgebreakerStream(const GridMesh& quantized, const std::vector<Corners>& triangles, CodingEffort effort) {
   Bytes stream;
   if (effort == CodingEffort::kQuick) {
-    LACERTA_ASSIGN_OR_RETURN(stream, EncodeIntegerPositions(*ToDracoMesh(quantized.mesh), quantized.bits, kUsualSettings));
+    LACERTA_ASSIGN_OR_RETURN(Bytes written, EncodeIntegerPositions(*ToDracoMesh(quantized.mesh), quantized.bits, kUsualSettings));
+    stream = RecodeStream(std::move(written));
   } else {
     LACERTA_ASSIGN_OR_RETURN(StockAttempt attempt, SmallestEdgebreakerStream(quantized.mesh, quantized.bits));
     stream = std::move(attempt.stream);

@@ -14,6 +14,7 @@
 
 #include "draco/component_order.h"
 #include "draco/merge_values.h"
+#include "draco/recoded_stream.h"
 #include "draco/stock_stream.h"
 
 namespace lacerta {
@@ -239,6 +240,7 @@ StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const Dr
   if (search == DracoSearch::kPredictions && result.coding.connectivity != Connectivity::kSequential) {
     const auto encode = [&](const Predictions& predictions) { return EncodeStock(*mesh, rounded, precision, {result.coding.connectivity, predictions}); };
     result.coding.predictions = FindPredictions(*mesh, encode, &result.bytes);
+    result.bytes = RecodeStream(std::move(result.bytes));
   }
   for (size_t i = 0; i < primitive.attributes.size(); ++i) {
     result.ids.push_back({primitive.attributes[i].name, mesh->attribute(static_cast<int>(i))->unique_id()});
@@ -258,28 +260,33 @@ StatusOr<uint64_t> DracoPrimitiveBytes(const Primitive& primitive, const DracoPr
 
 StatusOr<DracoEncoded> EncodeInOtherOrder(const Primitive& primitive, const DracoPrecision& precision, const DracoEncoded& encoded) {
   constexpr size_t kMostStarts = 16, kTriangleBudget = 1u << 15;
-  DracoEncoded result = encoded;
-  if (encoded.coding.connectivity == Connectivity::kSequential) return result;
+  if (encoded.coding.connectivity == Connectivity::kSequential) return encoded;
   Primitive rounded = RoundAttributes(primitive, precision);
   std::vector<Triangle> order = rounded.triangles;
-  const auto try_order = [&](std::vector<Triangle> triangles) -> Status {
+  Bytes smallest;
+  // Whether it takes fewer bytes than all before.
+  const auto try_order = [&](std::vector<Triangle> triangles) -> StatusOr<bool> {
     rounded.triangles = std::move(triangles);
     LACERTA_ASSIGN_OR_RETURN(const std::unique_ptr<draco::Mesh> mesh, ToDraco(rounded, precision));
     LACERTA_ASSIGN_OR_RETURN(Bytes bytes, EncodeStock(*mesh, rounded, precision, encoded.coding));
-    if (bytes.size() < result.bytes.size()) result.bytes = std::move(bytes);
-    return Status();
+    if (!smallest.empty() && bytes.size() >= smallest.size()) return false;
+    smallest = std::move(bytes);
+    return true;
   };
+  LACERTA_RETURN_IF_ERROR(try_order(order).status());
   if (std::vector<Triangle> nearest = ByNearestComponents(Surface(rounded), kManyComponents); nearest != order) {
-    LACERTA_RETURN_IF_ERROR(try_order(nearest));
-    if (result.bytes.size() < encoded.bytes.size()) order = std::move(nearest);
+    LACERTA_ASSIGN_OR_RETURN(const bool is_smaller, try_order(nearest));
+    if (is_smaller) order = std::move(nearest);
   }
   const size_t num_starts = std::min(kMostStarts, kTriangleBudget / order.size());
   for (size_t start = 1; start < num_starts; ++start) {
     std::vector<Triangle> rotated = order;
     std::rotate(rotated.begin(), rotated.begin() + static_cast<std::ptrdiff_t>(start * order.size() / num_starts), rotated.end());
-    LACERTA_RETURN_IF_ERROR(try_order(std::move(rotated)));
+    LACERTA_RETURN_IF_ERROR(try_order(std::move(rotated)).status());
   }
-  if (result.bytes.size() == encoded.bytes.size()) return result;
+  DracoEncoded result = encoded;
+  result.bytes = RecodeStream(std::move(smallest));
+  if (result.bytes.size() >= encoded.bytes.size()) return encoded;
   LACERTA_ASSIGN_OR_RETURN(result.decoded, DecodeDracoPrimitive(result.bytes, result.ids, DecodeLimits{}));
   return result;
 }
