@@ -52,7 +52,7 @@ struct DracoEncoded {
 
 enum class DracoSearch {
   kConnectivity,  // the smallest of Draco's ways to code connectivity, all with the predictions that Draco chooses
-  kPredictions,   // then the smallest prediction of each attribute: three times the work, the same decoded primitive
+  kPredictions,   // then the smallest prediction of each attribute, and RecodeStream: three times the work, the same decoded primitive
 };
 
 // Vertices that agree in all attributes once these are rounded become one, and triangles without area by that and unused
@@ -60,7 +60,7 @@ enum class DracoSearch {
 // finite.
 StatusOr<DracoEncoded> EncodeDracoPrimitive(const Primitive& primitive, const DracoPrecision& precision, DracoSearch search = DracoSearch::kConnectivity);
 
-// How many bytes it takes in one coding. Fails like EncodeDracoPrimitive.
+// How many bytes it takes in one coding, as Draco's encoder writes it. Fails like EncodeDracoPrimitive.
 StatusOr<uint64_t> DracoPrimitiveBytes(const Primitive& primitive, const DracoPrecision& precision, const DracoCoding& coding);
 
 // What EncodeDracoPrimitive made of the two, in the same coding with its triangles in the order that takes the fewest bytes of some: each component after

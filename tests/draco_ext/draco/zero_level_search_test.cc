@@ -48,7 +48,7 @@ TEST_F(ZeroLevelSearchTest, MeetsAPsnrClosely) {
 TEST(ZeroLevelSearch, GoesNoFartherAnywhereThanItsSimplificationAllows) {
   const TriangleMesh mesh = shapes::WithStick(shapes::BumpySphere(4, 0.2f), 0.001f, 0.5f);
   const SurfaceDistanceMeter meter = SurfaceDistanceMeter::Create(mesh).value();
-  const ResolvedTarget target{false, 0, 58};
+  const ResolvedTarget target{false, 0, 59};
   const auto farthest_by = [&](const SimplificationSequence& sequence) {
     const ZeroLevelStream stream = CodeZeroLevel(mesh, sequence, meter, target, SearchEffort()).value();
     EXPECT_TRUE(stream.meets_target);

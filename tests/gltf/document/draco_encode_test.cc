@@ -177,7 +177,9 @@ TEST(DracoEncode, MoreWaysTakeFewerBytesForTheSameValues) {
   EXPECT_LT(predicted.value().bytes.size(), quick.value().bytes.size());
   EXPECT_LE(smaller.value().bytes.size(), predicted.value().bytes.size());
   EXPECT_EQ(DracoPrimitiveBytes(primitive, precision, quick.value().coding).value(), quick.value().bytes.size());
-  EXPECT_EQ(DracoPrimitiveBytes(primitive, precision, predicted.value().coding).value(), predicted.value().bytes.size());
+  const uint64_t by_draco = DracoPrimitiveBytes(primitive, precision, predicted.value().coding).value();  // before RecodeStream
+  EXPECT_GT(by_draco, predicted.value().bytes.size());
+  EXPECT_LT(static_cast<double>(by_draco), 1.1 * static_cast<double>(predicted.value().bytes.size()));
   EXPECT_EQ(predicted.value().decoded.triangles, quick.value().decoded.triangles);
   for (size_t a = 0; a < primitive.attributes.size(); ++a) {
     EXPECT_EQ(predicted.value().decoded.attributes[a].data.bytes, quick.value().decoded.attributes[a].data.bytes);
