@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -235,9 +234,7 @@ std::optional<PredictableValues> FindPredictableValues(const draco::MeshDecoder&
   result.values.resize(corners.size() * result.components);
   result.first_parallelogram = {0};
   for (uint32_t n = 0; n < corners.size(); ++n) {
-    int32_t* const value = &result.values[size_t{n} * result.components];
-    if (!from.ConvertValue<int32_t>(draco::AttributeValueIndex(n), from.num_components(), value)) return std::nullopt;
-    if (std::any_of(value, value + result.components, [](int32_t v) { return std::abs(int64_t{v}) > kMostValue; })) return std::nullopt;
+    if (!from.ConvertValue<int32_t>(draco::AttributeValueIndex(n), from.num_components(), result.values.data() + size_t{n} * result.components)) return std::nullopt;
     if (cut != nullptr) {
       AppendParallelograms(*cut, ranks, corners[n], &result.parallelograms);
     } else {
@@ -245,6 +242,7 @@ std::optional<PredictableValues> FindPredictableValues(const draco::MeshDecoder&
     }
     result.first_parallelogram.push_back(static_cast<uint32_t>(result.parallelograms.size()));
   }
+  if (std::any_of(result.values.begin(), result.values.end(), [](int32_t v) { return v < -kMostValue || v > kMostValue; })) return std::nullopt;
   return result;
 }
 
