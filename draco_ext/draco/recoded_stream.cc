@@ -153,16 +153,17 @@ class StreamRecoder {
   }
 
   bool Values(const DescribedAttribute& attribute, int id) {
-    if (attribute.coder == draco::SEQUENTIAL_ATTRIBUTE_ENCODER_GENERIC) return false;
+    const size_t num_values = mesh_.attribute(id)->size();
+    if (attribute.coder == draco::SEQUENTIAL_ATTRIBUTE_ENCODER_GENERIC) return Skip(num_values * static_cast<uint64_t>(mesh_.attribute(id)->byte_stride()));
     CopyTo(Position());
     const size_t begin = out_.size();
     const uint32_t components = attribute.coder == draco::SEQUENTIAL_ATTRIBUTE_ENCODER_NORMALS ? 2 : attribute.components;
     int8_t prediction = 0, transform = 0;
     uint8_t is_coded = 0;
     if (!in_.Decode(&prediction) || (prediction != draco::PREDICTION_NONE && !in_.Decode(&transform))) return false;
-    if (!in_.Decode(&is_coded) || is_coded == 0 || !Block(mesh_.attribute(id)->size() * components, components)) return false;
+    if (!in_.Decode(&is_coded) || is_coded == 0 || !Block(num_values * components, components)) return false;
     if (prediction == draco::PREDICTION_NONE) return true;
-    if (!PredictionData(prediction, mesh_.attribute(id)->size())) return false;
+    if (!PredictionData(prediction, num_values)) return false;
     if (transform != draco::PREDICTION_TRANSFORM_WRAP) return true;
     const std::optional<PredictableValues> values = FindPredictableValues(decoder_, id);
     if (!values.has_value() || values->components != components) return true;
@@ -178,8 +179,7 @@ class StreamRecoder {
   bool PredictionData(int prediction, size_t num_values) {
     constexpr uint64_t kTransformSize = 8;
     if (prediction == draco::MESH_PREDICTION_CONSTRAINED_MULTI_PARALLELOGRAM) {
-      constexpr int kMostParallelograms = 4;
-      for (int i = 0; i < kMostParallelograms; ++i) {
+      for (uint32_t i = 0; i < kMostParallelograms; ++i) {
         uint32_t num_flags = 0;
         if (!draco::DecodeVarint(&num_flags, &in_) || !Bits(num_flags)) return false;
       }

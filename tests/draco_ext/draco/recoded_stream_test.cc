@@ -45,7 +45,7 @@ Bytes EncodeBy(const Way& way, const draco::Mesh& mesh) {
   encoder.SetEncodingMethod(way.method);
   SetEdgebreaker(way.edgebreaker, &encoder);
   for (int i = 0; i < mesh.num_attributes(); ++i) {
-    if (mesh.attribute(i)->data_type() == draco::DT_FLOAT32) encoder.SetAttributeQuantization(i, 11);
+    if (mesh.attribute(i)->attribute_type() != draco::GeometryAttribute::GENERIC) encoder.SetAttributeQuantization(i, 11);
   }
   if (way.prediction != draco::PREDICTION_UNDEFINED) {
     EXPECT_TRUE(encoder.SetAttributePredictionScheme(0, way.prediction).ok());
@@ -82,7 +82,7 @@ size_t ExpectSame(const Bytes& stream) {
   return recoded.size();
 }
 
-// A sphere with texture coordinates that jump across a seam, normals, which are by vertex, and a number on each face.
+// A sphere with texture coordinates that jump across a seam, normals, which are by vertex, a number on each face, and floats that stay exact.
 std::unique_ptr<draco::Mesh> Textured() {
   const TriangleMesh sphere = shapes::BumpySphere(3);
   draco::TriangleSoupMeshBuilder builder;
@@ -91,6 +91,7 @@ std::unique_ptr<draco::Mesh> Textured() {
   const int texture = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
   const int normal = builder.AddAttribute(draco::GeometryAttribute::NORMAL, 3, draco::DT_FLOAT32);
   const int number = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 1, draco::DT_UINT8);
+  const int exact = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 1, draco::DT_FLOAT32);
   for (uint32_t f = 0; f < sphere.triangles.size(); ++f) {
     const draco::FaceIndex face(f);
     std::array<Vec3f, 3> corner;
@@ -103,6 +104,7 @@ std::unique_ptr<draco::Mesh> Textured() {
     builder.SetAttributeValuesForFace(normal, face, &corner[0], &corner[1], &corner[2]);
     const auto side = static_cast<uint8_t>(turn * 200);
     builder.SetPerFaceAttributeValueForFace(number, face, &side);
+    builder.SetAttributeValuesForFace(exact, face, &corner[0].x, &corner[1].x, &corner[2].x);
   }
   return builder.Finalize();
 }
@@ -129,7 +131,7 @@ TEST(RecodeStream, TakesFewerBytesForWhatScansLookLike) {
 TEST(RecodeStream, KeepsAttributesWithAndWithoutSeams) {
   const std::unique_ptr<draco::Mesh> mesh = Textured();
   ASSERT_NE(mesh, nullptr);
-  ASSERT_EQ(mesh->num_attributes(), 4);
+  ASSERT_EQ(mesh->num_attributes(), 5);
   for (const Way& way : Ways()) {
     const Bytes stream = EncodeBy(way, *mesh);
     EXPECT_LT(ExpectSame(stream), stream.size());
