@@ -8,6 +8,7 @@
 #include <draco/mesh/mesh_attribute_corner_table.h>
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -114,11 +115,7 @@ class Predictor {
   std::vector<int32_t> predictions_;  // of each parallelogram
 };
 
-uint32_t CountBits(uint8_t bits) {
-  uint32_t count = 0;
-  for (; bits != 0; bits &= static_cast<uint8_t>(bits - 1)) ++count;
-  return count;
-}
+uint32_t NumUsed(uint32_t choice) { return static_cast<uint32_t>(std::bitset<kMostParallelograms>(choice).count()); }
 
 enum class Scheme { kTagged, kRaw };
 
@@ -133,7 +130,7 @@ class Costs {
       for (const uint32_t s : symbols) Count(s);
       ++lengths_[SymbolLength(*std::max_element(symbols.begin(), symbols.end()))];
       const uint32_t offers = predictor.num_parallelograms(n);
-      used[offers] += CountBits(choice[n]);
+      used[offers] += NumUsed(choice[n]);
       offered[offers] += offers;
     }
     const auto num_values = static_cast<double>(choice.size());
@@ -180,7 +177,7 @@ Choice LeastOf(const Predictor& predictor, const Costs& costs) {
     double least = std::numeric_limits<double>::infinity();
     for (uint32_t used = 0; used < 1u << offers; ++used) {
       predictor.Symbols(n, static_cast<uint8_t>(used), symbols.data());
-      const double cost = costs.Of(symbols.data(), CountBits(static_cast<uint8_t>(used)), offers);
+      const double cost = costs.Of(symbols.data(), NumUsed(used), offers);
       if (cost >= least) continue;
       least = cost;
       choice[n] = static_cast<uint8_t>(used);

@@ -32,8 +32,6 @@ int PredictionMethod(StockSettings::Prediction prediction) {
       return draco::PREDICTION_DIFFERENCE;
     case StockSettings::Prediction::kParallelogram:
       return draco::MESH_PREDICTION_PARALLELOGRAM;
-    case StockSettings::Prediction::kConstrainedMultiParallelogram:
-      return draco::MESH_PREDICTION_CONSTRAINED_MULTI_PARALLELOGRAM;
   }
   return draco::PREDICTION_DIFFERENCE;
 }

@@ -23,7 +23,7 @@ inline constexpr size_t kDracoHeaderSize = 11;
 // How Draco is asked to code a mesh.
 struct StockSettings {
   enum class Connectivity { kEdgebreaker, kEdgebreakerValence, kSequential };
-  enum class Prediction { kDifference, kParallelogram, kConstrainedMultiParallelogram };
+  enum class Prediction { kDifference, kParallelogram };  // others are found afterwards (RecodeStream)
 
   Connectivity connectivity = Connectivity::kEdgebreaker;
   Prediction prediction = Prediction::kParallelogram;

@@ -1,5 +1,7 @@
 #include "draco/symbol_block.h"
 
+#include <draco/core/bit_utils.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,7 +23,7 @@ constexpr int kTagPrecision = 12;
 // How often each symbol occurs; the last one does.
 using Counts = std::vector<uint64_t>;
 
-// Out of 2^precision; 0 for symbols that do not occur, as every zero of a run of at most 64 that a byte stands for.
+// Out of 2^precision; 0 for symbols that do not occur.
 struct ProbabilityTable {
   int precision = 12;
   std::vector<uint32_t> probabilities;
@@ -197,7 +199,7 @@ std::optional<Bytes> EncodeRaw(Span<const uint32_t> symbols) {
   return bytes;
 }
 
-constexpr size_t kMostLength = 31;  // tags are 0 .. 31
+constexpr size_t kMostLength = 31;  // of symbols, and the largest tag
 
 // The length that values of each length are written with: their own or a longer one, where another tag takes more bits than longer values do.
 std::array<uint32_t, kMostLength + 1> MergedLengths(const Counts& counts, uint32_t components) {
@@ -224,11 +226,9 @@ std::array<uint32_t, kMostLength + 1> MergedLengths(const Counts& counts, uint32
   return result;
 }
 
-// None where a value has more bits than there are tags.
-std::optional<Bytes> EncodeTagged(Span<const uint32_t> symbols, uint32_t components) {
+Bytes EncodeTagged(Span<const uint32_t> symbols, uint32_t components) {
   std::vector<uint32_t> tags;
   for (size_t i = 0; i < symbols.size(); i += components) tags.push_back(SymbolLength(*std::max_element(&symbols[i], &symbols[i] + components)));
-  if (*std::max_element(tags.begin(), tags.end()) > kMostLength) return std::nullopt;
   const auto merged = MergedLengths(Count(tags), components);
   for (uint32_t& tag : tags) tag = merged[tag];
   const Span<const uint32_t> lengths(tags.data(), tags.size());
@@ -249,11 +249,7 @@ std::optional<Bytes> EncodeTagged(Span<const uint32_t> symbols, uint32_t compone
 
 }  // namespace
 
-uint32_t SymbolLength(uint32_t symbol) {
-  uint32_t length = 1;
-  while (length < 32 && symbol >> length != 0) ++length;
-  return length;
-}
+uint32_t SymbolLength(uint32_t symbol) { return 1 + static_cast<uint32_t>(draco::MostSignificantBit(std::max(symbol, 1u))); }
 
 Bytes EncodeBitBlock(Span<const uint8_t> bits) {
   constexpr uint32_t kWhole = 256, kLeastState = 4096;
@@ -284,9 +280,9 @@ Bytes EncodeBitBlock(Span<const uint8_t> bits) {
 }
 
 Bytes EncodeSymbolBlock(Span<const uint32_t> symbols, uint32_t components) {
-  std::optional<Bytes> raw = EncodeRaw(symbols), tagged = EncodeTagged(symbols, components);
-  if (!tagged.has_value() || (raw.has_value() && raw->size() <= tagged->size())) return std::move(*raw);
-  return std::move(*tagged);
+  std::optional<Bytes> raw = EncodeRaw(symbols);
+  Bytes tagged = EncodeTagged(symbols, components);
+  return raw.has_value() && raw->size() <= tagged.size() ? std::move(*raw) : tagged;
 }
 
 }  // namespace lacerta
