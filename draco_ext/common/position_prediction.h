@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
+#include "common/lattice_point.h"
 #include "common/subdivision.h"
 
 namespace lacerta {
 
-using LatticePoint = std::array<int32_t, 3>;
 using LatticeVector = std::array<int64_t, 3>;
 
 // How much is known about a vertex before it is coded.

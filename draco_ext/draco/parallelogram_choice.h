@@ -2,37 +2,91 @@
 #ifndef LACERTA_DRACO_PARALLELOGRAM_CHOICE_H_
 #define LACERTA_DRACO_PARALLELOGRAM_CHOICE_H_
 
-#include <draco/compression/mesh/mesh_decoder.h>
-
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
+#include "draco/predictable_values.h"
 #include "lacerta/mesh.h"
 
 namespace lacerta {
 
-// Values in the order in which a stream codes them, and what may predict them.
-struct PredictableValues {
-  uint32_t components = 0;
-  std::vector<int32_t> values;                          // #N x components, -kMostValue .. kMostValue
-  std::vector<std::array<uint32_t, 3>> parallelograms;  // a, b, c < n: value n may be a + b - c
-  std::vector<uint32_t> first_parallelogram;            // #N + 1: of each value, at most kMostParallelograms
+// How values are predicted.
+struct ParallelogramChoice {
+  enum class Prediction {
+    kParallelogram,             // from the usual one, or from the value before
+    kConstrainedMulti,          // from the mean of any, with flags that tell which; from the value before where it is none
+  };
+  enum class Scheme { kTagged, kRaw };  // of symbols
 
-  size_t size() const { return first_parallelogram.size() - 1; }
+  Prediction prediction = Prediction::kParallelogram;
+  Scheme scheme = Scheme::kTagged;
+  std::vector<uint8_t> used;  // #N, a bit for each of its parallelograms: whether it takes part
 };
 
-inline constexpr uint32_t kMostParallelograms = 4;  // of a value, for Draco's decoder
-inline constexpr int32_t kMostValue = 1 << 28;      // or least, negated
+// used: of one value.
+uint32_t NumUsed(uint32_t used);
 
-// decoder: of a mesh by edgebreaker, which it has decoded without transforms, so that values are integers. None where they are beyond kMostValue.
-std::optional<PredictableValues> FindPredictableValues(const draco::MeshDecoder& decoder, int attribute);
+// The symbol for the correction of a prediction: 0, -1, 1, -2, 2 as 0, 1, 2, 3, 4. correction: less than 2^31 away from 0.
+inline uint32_t CorrectionSymbol(int64_t correction) { return static_cast<uint32_t>(correction < 0 ? -2 * correction - 1 : 2 * correction); }
 
-// What a stream holds for these values by "constrained multi parallelograms": the prediction with its transform, the symbols, which parallelograms are
-// left out of the mean that predicts each value, and the range of the values. Draco's encoder decides as it goes, by the entropy of what it has
-// coded so far; here choices and their costs, of tagged and of raw symbols, are found in turns. values: not empty.
-Bytes EncodeByParallelograms(const PredictableValues& values);
+// Symbols of values of which parallelograms are chosen.
+class ParallelogramPredictor {
+ public:
+  // values: not empty; must outlive the predictor.
+  explicit ParallelogramPredictor(const PredictableValues& values);
+
+  const PredictableValues& values() const { return values_; }
+  int32_t low() const { return static_cast<int32_t>(low_); }  // of all components
+  int32_t high() const { return static_cast<int32_t>(high_); }
+
+  // Of the n-th value, predicted by the mean of the parallelograms of `used`; by the value before where there are none.
+  void Symbols(size_t n, uint32_t used, uint32_t* symbols) const;
+
+ private:
+  int32_t At(size_t n, uint32_t k) const { return values_.values[n * values_.components + k]; }
+  uint32_t Symbol(int32_t value, int64_t prediction) const;
+
+  const PredictableValues& values_;
+  int64_t low_ = 0, high_ = 0, range_ = 1, least_ = 0, most_ = 0;  // of corrections, which are modulo the range of the values
+  std::vector<int32_t> predictions_;                               // of each parallelogram
+};
+
+// What symbols and flags take in a stream where they are as frequent as they were in one before, bits.
+class SymbolCosts {
+ public:
+  SymbolCosts(const ParallelogramPredictor& predictor, const ParallelogramChoice& choice);
+
+  // Of a value with these symbols, by the mean of num_used of so many parallelograms.
+  double Of(const uint32_t* symbols, uint32_t num_used, uint32_t offers) const {
+    const double flags = num_used * used_[offers] + (offers - num_used) * left_out_[offers];
+    return flags + (is_tagged_ ? Tagged(symbols) : Raw(symbols));
+  }
+
+ private:
+  void Count(uint32_t symbol);
+  double Tagged(const uint32_t* symbols) const;
+  double Raw(const uint32_t* symbols) const;
+
+  const bool is_tagged_;
+  const uint32_t components_;
+  std::vector<double> symbols_;
+  double unseen_ = 0;
+  std::array<double, 33> lengths_{};  // of all components of a value, with the tag
+  std::array<double, kMostParallelograms + 1> used_{}, left_out_{};
+};
+
+// Values as a stream holds them: the prediction with its transform, the symbols, which parallelograms are left out of the mean that predicts each, and
+// the range of the values.
+struct CodedValues {
+  ParallelogramChoice choice;
+  Bytes bytes;
+};
+
+// In the fewest bytes found. Draco's encoder decides as it goes, by the entropy of what it has coded so far; here choices and their costs, of tagged and
+// of raw symbols, are found in turns. values: not empty.
+CodedValues CodeByParallelograms(const PredictableValues& values);
 
 }  // namespace lacerta
 

@@ -49,6 +49,15 @@ std::unique_ptr<DecodedIntegers> DecodeIntegers(const Bytes& stream) {
   return result->decoder.Decode(options, &buffer, &result->mesh).ok() ? std::move(result) : nullptr;
 }
 
+// And where it is no mesh by edgebreaker.
+std::unique_ptr<DecodedIntegers> DecodeEdgebreaker(const Bytes& stream) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(stream.data()), stream.size());
+  const StatusOr<draco::DracoHeader> header = ReadMeshHeader(&buffer);
+  if (!header.ok() || header.value().encoder_method != draco::MESH_EDGEBREAKER_ENCODING) return nullptr;
+  return DecodeIntegers(stream);
+}
+
 bool IsSame(const draco::PointAttribute& a, const draco::PointAttribute& b, uint32_t num_points) {
   const size_t size = a.buffer()->data_size();
   if (size != b.buffer()->data_size() || std::memcmp(a.buffer()->data(), b.buffer()->data(), size) != 0) return false;
@@ -76,12 +85,18 @@ class StreamRecoder {
     in_.Init(reinterpret_cast<const char*>(stream.data()), stream.size());
   }
 
-  bool Recode() { return Connectivity() && Attributes() && in_.remaining_size() == 0; }
+  bool Recode() { return Connectivity() && Descriptions() && Attributes() && in_.remaining_size() == 0; }
 
-  Bytes Finish() {
-    CopyTo(stream_.size());
-    return std::move(out_);
+  // Up to the values of the only attribute.
+  bool RecodeBeforeValues() {
+    if (!Connectivity() || !Descriptions()) return false;
+    CopyTo(Position());
+    return decoders_.size() == 1 && decoders_[0].size() == 1 && decoders_[0][0].coder != draco::SEQUENTIAL_ATTRIBUTE_ENCODER_GENERIC;
   }
+
+  void CopyRest() { CopyTo(stream_.size()); }
+
+  Bytes Result() { return std::move(out_); }
 
  private:
   bool Connectivity() {
@@ -116,17 +131,21 @@ class StreamRecoder {
     return Skip((uint64_t{num_events} + 7) / 8);
   }
 
-  bool Attributes() {
+  bool Descriptions() {
     uint8_t num_decoders = 0;
     if (!in_.Decode(&num_decoders)) return false;
     constexpr uint64_t kIdentifierSize = 3;
     if (!Skip(num_decoders * kIdentifierSize)) return false;
-    std::vector<std::vector<DescribedAttribute>> decoders(num_decoders);
-    for (auto& attributes : decoders) {
-      if (!Descriptions(&attributes)) return false;
+    decoders_.resize(num_decoders);
+    for (auto& attributes : decoders_) {
+      if (!DescriptionsOf(&attributes)) return false;
     }
+    return true;
+  }
+
+  bool Attributes() {
     int id = 0;
-    for (const auto& attributes : decoders) {
+    for (const auto& attributes : decoders_) {
       for (const DescribedAttribute& a : attributes) {
         if (id == mesh_.num_attributes() || !Values(a, id)) return false;
         ++id;
@@ -138,7 +157,7 @@ class StreamRecoder {
     return true;
   }
 
-  bool Descriptions(std::vector<DescribedAttribute>* attributes) {
+  bool DescriptionsOf(std::vector<DescribedAttribute>* attributes) {
     uint32_t count = 0;
     if (!draco::DecodeVarint(&count, &in_) || count > static_cast<uint32_t>(mesh_.num_attributes())) return false;
     attributes->resize(count);
@@ -168,7 +187,7 @@ class StreamRecoder {
     const std::optional<PredictableValues> values = FindPredictableValues(decoder_, id);
     if (!values.has_value() || values->components != components) return true;
     CopyTo(Position());
-    const Bytes predicted = EncodeByParallelograms(*values);
+    const Bytes predicted = CodeByParallelograms(*values).bytes;
     if (predicted.size() >= out_.size() - begin) return true;
     out_.resize(begin);
     out_.insert(out_.end(), predicted.begin(), predicted.end());
@@ -262,22 +281,30 @@ class StreamRecoder {
   draco::DecoderBuffer in_;
   Bytes out_;
   size_t copied_ = 0;  // of stream_
+  std::vector<std::vector<DescribedAttribute>> decoders_;  // of attributes
 };
 
 }  // namespace
 
 Bytes RecodeStream(Bytes stream) {
-  draco::DecoderBuffer buffer;
-  buffer.Init(reinterpret_cast<const char*>(stream.data()), stream.size());
-  const StatusOr<draco::DracoHeader> header = ReadMeshHeader(&buffer);
-  if (!header.ok() || header.value().encoder_method != draco::MESH_EDGEBREAKER_ENCODING) return stream;
-  const std::unique_ptr<DecodedIntegers> given = DecodeIntegers(stream);
+  const std::unique_ptr<DecodedIntegers> given = DecodeEdgebreaker(stream);
   if (given == nullptr) return stream;
   StreamRecoder recoder(stream, *given);
   if (!recoder.Recode()) return stream;
-  Bytes recoded = recoder.Finish();
+  recoder.CopyRest();
+  Bytes recoded = recoder.Result();
   const std::unique_ptr<DecodedIntegers> decoded = DecodeIntegers(recoded);
   return decoded != nullptr && IsSame(given->mesh, decoded->mesh) ? recoded : stream;
+}
+
+std::optional<StreamOfValues> TakeApart(const Bytes& stream) {
+  const std::unique_ptr<DecodedIntegers> given = DecodeEdgebreaker(stream);
+  if (given == nullptr) return std::nullopt;
+  StreamRecoder recoder(stream, *given);
+  if (!recoder.RecodeBeforeValues()) return std::nullopt;
+  std::optional<PredictableValues> values = FindPredictableValues(given->decoder, 0);
+  if (!values.has_value()) return std::nullopt;
+  return StreamOfValues{recoder.Result(), *std::move(values)};
 }
 
 }  // namespace lacerta

@@ -124,9 +124,16 @@ Status SetQuantizationGrid(const QuantizationGrid& grid, Bytes* stream) {
   if (std::memcmp(written, expected.data(), sizeof(expected)) != 0) {  // NOLINT(bugprone-suspicious-memory-comparison): the bytes are meant
     return InternalError("Draco stream does not end with its quantization grid");
   }
-  const std::array<float, 4> wanted = {grid.origin.x, grid.origin.y, grid.origin.z, grid.range};
-  std::memcpy(written, wanted.data(), sizeof(wanted));
+  stream->resize(stream->size() - kGridSize);
+  AppendQuantizationGrid(grid, bits, stream);
   return {};
+}
+
+void AppendQuantizationGrid(const QuantizationGrid& grid, int bits, Bytes* stream) {
+  const std::array<float, 4> place = {grid.origin.x, grid.origin.y, grid.origin.z, grid.range};
+  stream->resize(stream->size() + sizeof(place));
+  std::memcpy(stream->data() + stream->size() - sizeof(place), place.data(), sizeof(place));
+  stream->push_back(static_cast<uint8_t>(bits));
 }
 
 StatusOr<draco::DracoHeader> ReadMeshHeader(draco::DecoderBuffer* buffer) {

@@ -52,6 +52,9 @@ float RangeForStep(float step, int bits);
 // Draco's options cannot carry it: they store floats as decimal text with six digits after the point.
 Status SetQuantizationGrid(const QuantizationGrid& grid, Bytes* stream);
 
+// Ends a stream of positions alone that has none yet. bits: of the integers.
+void AppendQuantizationGrid(const QuantizationGrid& grid, int bits, Bytes* stream);
+
 // Reads the header of a mesh stream of any method, and skips the metadata that may follow it. Fails with kInvalidData,
 // or with kUnsupported on a point cloud and on a bitstream version other than 2.2, which Draco writes since 2017.
 StatusOr<draco::DracoHeader> ReadMeshHeader(draco::DecoderBuffer* buffer);

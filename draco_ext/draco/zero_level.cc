@@ -92,6 +92,14 @@ StatusOr<Bytes> EdgebreakerStream(const GridMesh& quantized, const std::vector<C
   return stream;
 }
 
+// Puts the integers of result->stream in their place.
+Status Place(const QuantizationGrid& grid, CodedZeroLevel* result) {
+  LACERTA_RETURN_IF_ERROR(SetQuantizationGrid(grid, &result->stream));
+  LACERTA_ASSIGN_OR_RETURN(DecodedBase decoded, DecodeBaseMesh(result->stream, kNoDecodeLimits));
+  result->mesh = std::move(decoded.mesh);
+  return {};
+}
+
 StatusOr<CodedZeroLevel> Encode(const GridMesh& quantized, CodingEffort effort) {
   const std::vector<Corners> triangles = SortedTriangles(quantized.mesh);
   CodedZeroLevel result;
@@ -105,9 +113,23 @@ StatusOr<CodedZeroLevel> Encode(const GridMesh& quantized, CodingEffort effort) 
     LACERTA_ASSIGN_OR_RETURN(result.stream, EncodeIntegerPositions(*ToDracoMesh(quantized.mesh), quantized.bits, settings));
     if (!HoldsTriangles(result.stream, triangles)) return InternalError("Draco did not keep the triangles of the mesh");
   }
-  LACERTA_RETURN_IF_ERROR(SetQuantizationGrid(quantized.grid, &result.stream));
-  LACERTA_ASSIGN_OR_RETURN(DecodedBase decoded, DecodeBaseMesh(result.stream, kNoDecodeLimits));
-  result.mesh = std::move(decoded.mesh);
+  LACERTA_RETURN_IF_ERROR(Place(quantized.grid, &result));
+  return result;
+}
+
+StatusOr<GridMesh> OnGrid(const LatticeMesh& mesh) {
+  GridMesh result;
+  int32_t extent = 1;
+  for (const LatticePoint& p : mesh.lattice) {
+    extent = std::max({extent, p[0], p[1], p[2]});
+    result.mesh.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+  }
+  while (extent >> result.bits != 0) ++result.bits;
+  constexpr int kMostBits = 22;  // Draco adds a half in floats before it rounds
+  if (result.bits > kMostBits) return InvalidData("lattice spans more than 22 bits; choose a larger step");
+  result.mesh.triangles = mesh.triangles;
+  result.grid = {mesh.origin, mesh.step * static_cast<float>((1 << result.bits) - 1)};
+  LACERTA_RETURN_IF_ERROR(CheckEncodable(result.mesh));
   return result;
 }
 
@@ -150,19 +172,24 @@ StatusOr<CodedZeroLevel> EncodeLatticeMesh(const LatticeMesh& mesh, CodingEffort
     StatusOr<CodedZeroLevel> compact = EncodeCompactLattice(mesh, effort);
     if (compact.ok()) return compact;
   }
-  GridMesh quantized;
-  int32_t extent = 1;
-  for (const auto& p : mesh.lattice) {
-    extent = std::max({extent, p[0], p[1], p[2]});
-    quantized.mesh.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
-  }
-  while (extent >> quantized.bits != 0) ++quantized.bits;
-  constexpr int kMostBits = 22;  // Draco adds a half in floats before it rounds
-  if (quantized.bits > kMostBits) return InvalidData("lattice spans more than 22 bits; choose a larger step");
-  quantized.mesh.triangles = mesh.triangles;
-  quantized.grid = {mesh.origin, mesh.step * static_cast<float>((1 << quantized.bits) - 1)};
-  LACERTA_RETURN_IF_ERROR(CheckEncodable(quantized.mesh));
+  LACERTA_ASSIGN_OR_RETURN(const GridMesh quantized, OnGrid(mesh));
   return Encode(quantized, effort);
+}
+
+StatusOr<PositionStream> SmallestOrder(const LatticeMesh& mesh) {
+  LACERTA_ASSIGN_OR_RETURN(const GridMesh quantized, OnGrid(mesh));
+  LACERTA_ASSIGN_OR_RETURN(const StockAttempt attempt, SmallestEdgebreakerStream(quantized.mesh, quantized.bits));
+  if (!HoldsTriangles(attempt.stream, SortedTriangles(quantized.mesh))) return Unsupported("edgebreaker does not keep the triangles of the mesh");
+  return PositionStream::Create(mesh.triangles, mesh.lattice.size(), attempt);
+}
+
+StatusOr<CodedZeroLevel> EncodeInOrder(const PositionStream& order, const LatticeMesh& mesh) {
+  LACERTA_ASSIGN_OR_RETURN(const GridMesh quantized, OnGrid(mesh));
+  CodedZeroLevel result;
+  result.stream = order.Encode(mesh.lattice, QuantizationGrid{{}, static_cast<float>((1 << quantized.bits) - 1)}, quantized.bits);
+  if (!HoldsTriangles(result.stream, SortedTriangles(quantized.mesh))) return InternalError("Draco did not keep the triangles of the mesh");
+  LACERTA_RETURN_IF_ERROR(Place(quantized.grid, &result));
+  return result;
 }
 
 }  // namespace lacerta

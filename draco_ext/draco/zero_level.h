@@ -3,9 +3,10 @@
 #define LACERTA_DRACO_ZERO_LEVEL_H_
 
 #include "draco/base_coding.h"
+#include "draco/position_stream.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
-#include "remesh/mesh_fit.h"
+#include "remesh/lattice_fit.h"
 
 namespace lacerta {
 
@@ -33,6 +34,12 @@ StatusOr<CodedZeroLevel> EncodeZeroLevel(const TriangleMesh& mesh, int bits);
 // lattice that spans more than 22 bits too. coding: kCompact gives a compact base, cut where the mesh is no manifold, and a stock
 // stream where triangles are degenerate or disagree with their neighbors or a vertex has none.
 StatusOr<CodedZeroLevel> EncodeLatticeMesh(const LatticeMesh& mesh, CodingEffort effort, BaseCoding coding = BaseCoding::kStock);
+
+// The order of the smallest stock stream found for this mesh. Fails where there is none that keeps its triangles but a sequential one.
+StatusOr<PositionStream> SmallestOrder(const LatticeMesh& mesh);
+
+// In that order. mesh: the one of SmallestOrder but for its points, origin and step.
+StatusOr<CodedZeroLevel> EncodeInOrder(const PositionStream& order, const LatticeMesh& mesh);
 
 }  // namespace lacerta
 

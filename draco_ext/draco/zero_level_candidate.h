@@ -5,12 +5,13 @@
 #include <cstddef>
 #include <optional>
 
+#include "draco/position_stream.h"
 #include "draco/zero_level.h"
 #include "lacerta/mesh.h"
 #include "lacerta/status.h"
 #include "remesh/distance_model.h"
 #include "remesh/mesh_neighbors.h"
-#include "remesh/mesh_fit.h"
+#include "remesh/lattice_fit.h"
 
 namespace lacerta {
 
@@ -41,11 +42,17 @@ class ZeroLevelCandidate {
   // `lattice_distortion` to the squared distance.
   void FitForRate(double lattice_distortion, int rounds);
 
+  // Finds the order of the smallest stock stream on the lattice of this step, and fits the vertices to what predicts them there. Coding is in
+  // that order from then on; where there is none, as before.
+  void FitForStream(double step);
+
   // On the lattice of this step, or of the finest that Draco keeps. coding: see EncodeLatticeMesh. rounds: of descent, each after looking anew.
   StatusOr<Coding> Code(double step, int rounds, CodingEffort effort, BaseCoding coding = BaseCoding::kStock) const;
 
  private:
+  double StepNear(double step) const;
   LatticeMesh FitLattice(double step, int rounds, double* distortion) const;
+  StatusOr<CodedZeroLevel> Encode(const LatticeMesh& lattice, CodingEffort effort, BaseCoding coding) const;
 
   const FitTarget& target_;
   TriangleMesh mesh_;
@@ -53,6 +60,7 @@ class ZeroLevelCandidate {
   // None where there are too many triangles to be fitted and to have their lattice points chosen; nor is there a model then.
   std::optional<MeshNeighbors> neighbors_;
   DistanceModel model_;  // at mesh_
+  std::optional<PositionStream> order_;
   double fit_distortion_ = 0;
   double distortion_per_bit_ = 0;
 };

@@ -317,6 +317,7 @@ class ZeroLevelSearch {
     const double added = target_.is_rate ? candidate.fit_distortion() : distortion_ - candidate.fit_distortion();
     candidate.FitForRate(std::max(added, 0.05 * candidate.fit_distortion()), kFitRounds);
     double step = tried_.at(best_).step;
+    if (target_.base_coding == BaseCoding::kStock) candidate.FitForStream(step);
     double bias = 1;  // of squared distances measured in full against those by few samples
     std::optional<ZeroLevelStream> best;
     int measurements = 0;

@@ -1,3 +1,5 @@
+#include "remesh/lattice_fit.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -5,22 +7,65 @@
 #include "geometry/bounding_box.h"
 #include "geometry/vertex_area_vectors.h"
 #include "remesh/folds.h"
-#include "remesh/mesh_fit.h"
 
 namespace lacerta {
 namespace {
-
-using LatticePoint = std::array<int32_t, 3>;
 
 int32_t Round(double x) { return static_cast<int32_t>(std::lround(x)); }
 
 LatticePoint NearestPoint(const Vec3d& p) { return {Round(p.x), Round(p.y), Round(p.z)}; }
 
+// Of all flaps around a vertex: it is not known which ones predict.
+class FlapPrices : public PointPrices {
+ public:
+  FlapPrices(const MeshNeighbors& neighbors, const RateModel& rate) : neighbors_(neighbors), rate_(rate) {}
+
+  void Begin(const std::vector<LatticePoint>& points) override { points_ = points; }
+
+  // Errors of the flaps around v but for its own part in them, in steps.
+  void LookAround(uint32_t v) override {
+    errors_.clear();
+    for (const uint32_t i : neighbors_.vertex_flaps[v]) {
+      const auto& flap = neighbors_.flaps[i];
+      LatticePoint sum{};
+      int sign = 1;
+      for (size_t k = 0; k < 4; ++k) {
+        const int s = k < 2 ? 1 : -1;
+        if (flap[k] == v) {
+          sign = s;
+          continue;
+        }
+        for (size_t c = 0; c < 3; ++c) sum[c] += s * points_[flap[k]][c];
+      }
+      errors_.push_back({sign * sum[0], sign * sum[1], sign * sum[2]});  // the error is +-(p + this)
+    }
+  }
+
+  double Bits(const LatticePoint& p, double enough) const override {
+    double bits = 0;
+    for (const LatticePoint& others : errors_) {
+      if (bits >= enough) break;
+      double r2 = 0;
+      for (size_t c = 0; c < 3; ++c) r2 += static_cast<double>(p[c] + others[c]) * static_cast<double>(p[c] + others[c]);
+      bits += rate_.BitsOfFlap(r2 * rate_.step * rate_.step);
+    }
+    return bits;
+  }
+
+  void Move(uint32_t v, const LatticePoint& p) override { points_[v] = p; }
+
+ private:
+  const MeshNeighbors& neighbors_;
+  const RateModel& rate_;
+  std::vector<LatticePoint> points_;
+  std::vector<LatticePoint> errors_;
+};
+
 // Coordinate descent over lattice points.
 class LatticeDescent {
  public:
-  LatticeDescent(const FitTarget& target, const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate)
-      : target_(target), mesh_(mesh), model_(model), neighbors_(neighbors), rate_(rate), origin_(Vec3Cast<double>(BoundsOf(mesh.positions).low)) {
+  LatticeDescent(const FitTarget& target, const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate, PointPrices* prices)
+      : target_(target), mesh_(mesh), model_(model), neighbors_(neighbors), rate_(rate), prices_(*prices), origin_(Vec3Cast<double>(BoundsOf(mesh.positions).low)) {
     lattice_.reserve(mesh.positions.size());
     moves_.resize(mesh.positions.size());
     for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
@@ -31,6 +76,7 @@ class LatticeDescent {
   }
 
   void Sweep() {
+    if (BitsMatter()) prices_.Begin(lattice_);
     for (uint32_t v = 0; v < lattice_.size(); ++v) Improve(v);
   }
 
@@ -62,7 +108,7 @@ class LatticeDescent {
     Symmetric3 block = model_.diagonal[v];
     block.AddScaledIdentity(1e-2 * block.Trace() + std::numeric_limits<double>::min());
     const Vec3d optimum = -block.Solve(slope);
-    FindFlapErrors(v);
+    if (BitsMatter()) prices_.LookAround(v);
     const LatticePoint current = lattice_[v];
     const int current_turned = NumTurned(v);
     LatticePoint best = current;
@@ -92,42 +138,19 @@ class LatticeDescent {
       best = current;
       moves_[v] = MoveTo(v, best);
     }
+    if (best == current) return;
     lattice_[v] = best;
+    if (BitsMatter()) prices_.Move(v, best);
   }
 
-  // Errors of the flaps around v but for its own part in them, in steps.
-  void FindFlapErrors(uint32_t v) {
-    flap_errors_.clear();
-    if (!(rate_.distortion_per_bit > 0)) return;
-    for (const uint32_t i : neighbors_.vertex_flaps[v]) {
-      const auto& flap = neighbors_.flaps[i];
-      LatticePoint sum{};
-      int sign = 1;
-      for (size_t k = 0; k < 4; ++k) {
-        const int s = k < 2 ? 1 : -1;
-        if (flap[k] == v) {
-          sign = s;
-          continue;
-        }
-        for (size_t c = 0; c < 3; ++c) sum[c] += s * lattice_[flap[k]][c];
-      }
-      flap_errors_.push_back({sign * sum[0], sign * sum[1], sign * sum[2]});  // the error is +-(p + this)
-    }
-  }
+  bool BitsMatter() const { return rate_.distortion_per_bit > 0; }
 
   // The cost of v at p, or a part of it that comes to `enough` already.
   double Cost(uint32_t v, const Vec3d& slope, const LatticePoint& p, double enough) const {
     const Vec3d move = MoveTo(v, p);
     const double distortion = 2 * Dot(slope, move) + Dot(move, model_.diagonal[v] * move);
-    double cost = distortion, bits = 0;
-    for (const LatticePoint& others : flap_errors_) {
-      if (cost >= enough) break;
-      double r2 = 0;
-      for (size_t c = 0; c < 3; ++c) r2 += static_cast<double>(p[c] + others[c]) * static_cast<double>(p[c] + others[c]);
-      bits += rate_.BitsOfFlap(r2 * rate_.step * rate_.step);
-      cost = distortion + rate_.distortion_per_bit * bits;
-    }
-    return cost;
+    if (!BitsMatter() || distortion >= enough) return distortion;
+    return distortion + rate_.distortion_per_bit * prices_.Bits(p, (enough - distortion) / rate_.distortion_per_bit);
   }
 
   Vec3d Moved(uint32_t v) const { return Vec3Cast<double>(mesh_.positions[v]) + moves_[v]; }
@@ -165,10 +188,10 @@ class LatticeDescent {
   const DistanceModel& model_;
   const MeshNeighbors& neighbors_;
   const RateModel& rate_;
+  PointPrices& prices_;
   const Vec3d origin_;
   std::vector<LatticePoint> lattice_;
   std::vector<Vec3d> moves_;  // from mesh_ to the lattice points
-  std::vector<LatticePoint> flap_errors_;
 };
 
 }  // namespace
@@ -195,8 +218,10 @@ LatticeMesh NearestOnLattice(const TriangleMesh& mesh, double step) {
   return result;
 }
 
-LatticeMesh FitToLattice(const FitTarget& target, const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate) {
-  LatticeDescent descent(target, mesh, model, neighbors, rate);
+LatticeMesh FitToLattice(const FitTarget& target, const TriangleMesh& mesh, const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate,
+                         PointPrices* prices) {
+  FlapPrices flaps(neighbors, rate);
+  LatticeDescent descent(target, mesh, model, neighbors, rate, prices != nullptr ? prices : &flaps);
   constexpr int kSweeps = 3;
   for (int i = 0; i < kSweeps; ++i) descent.Sweep();
   return descent.Result();

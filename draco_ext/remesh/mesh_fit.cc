@@ -11,27 +11,24 @@ namespace {
 
 using Moves = std::vector<Vec3d>;
 
-// The quadratic form that one round minimizes: the model, damped, and the bits as squares of the flaps' errors.
+// The quadratic form that one round minimizes: the model, damped, and the bits as squares of the predictions' errors.
 class RoundSystem {
  public:
-  RoundSystem(const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate, const TriangleMesh& mesh)
-      : model_(model), neighbors_(neighbors), diagonal_(model.diagonal), gradient_(model.gradient) {
+  RoundSystem(const DistanceModel& model, const MeshNeighbors& neighbors, const RateModel& rate, const LinearPredictions& predictions, const TriangleMesh& mesh)
+      : model_(model), neighbors_(neighbors), predictions_(predictions), diagonal_(model.diagonal), gradient_(model.gradient) {
     double mean_trace = 0;
     for (const Symmetric3& block : diagonal_) mean_trace += block.Trace();
     mean_trace /= static_cast<double>(diagonal_.size());
     for (size_t v = 0; v < diagonal_.size(); ++v) diagonal_[v].AddScaledIdentity(kDamping * (model.diagonal[v].Trace() + 0.01 * mean_trace));
     preconditioner_ = diagonal_;
-    if (!(rate.distortion_per_bit > 0)) return;
-    for (const auto& [a, b, c, d] : neighbors.flaps) {
-      const Vec3d r = Vec3Cast<double>(mesh.positions[a]) + Vec3Cast<double>(mesh.positions[b]) - Vec3Cast<double>(mesh.positions[c]) -
-                      Vec3Cast<double>(mesh.positions[d]);
-      const double weight = rate.distortion_per_bit * rate.BitSlope(SquaredNorm(r));
-      flap_weights_.push_back(weight);
-      for (const uint32_t v : {a, b, c, d}) preconditioner_[v].AddScaledIdentity(weight);
-      gradient_[a] += r * weight;
-      gradient_[b] += r * weight;
-      gradient_[c] -= r * weight;
-      gradient_[d] -= r * weight;
+    for (size_t i = 0; i < predictions.size(); ++i) {
+      const Vec3d error = ErrorOf(i, [&](uint32_t v) { return Vec3Cast<double>(mesh.positions[v]); });
+      const double weight = predictions.flaps() * rate.distortion_per_bit * rate.BitSlope(SquaredNorm(error));
+      weights_.push_back(weight);
+      for (const auto& [v, factor] : predictions[i]) {
+        preconditioner_[v].AddScaledIdentity(weight * Square(factor));
+        gradient_[v] += error * (weight * static_cast<double>(factor));
+      }
     }
   }
 
@@ -69,6 +66,15 @@ class RoundSystem {
  private:
   static constexpr double kDamping = 0.02;  // of the curvature; holds what no sample does
 
+  static double Square(double x) { return x * x; }
+
+  template <typename At>
+  Vec3d ErrorOf(size_t prediction, const At& at) const {
+    Vec3d error;
+    for (const auto& [v, factor] : predictions_[prediction]) error += at(v) * static_cast<double>(factor);
+    return error;
+  }
+
   Moves Multiply(const Moves& x) const {
     Moves result(x.size());
     for (size_t v = 0; v < x.size(); ++v) result[v] = diagonal_[v] * x[v];
@@ -77,22 +83,19 @@ class RoundSystem {
       result[u] += model_.off_diagonal[e] * x[v];
       result[v] += model_.off_diagonal[e] * x[u];
     }
-    for (size_t i = 0; i < flap_weights_.size(); ++i) {
-      const auto& [a, b, c, d] = neighbors_.flaps[i];
-      const Vec3d r = (x[a] + x[b] - x[c] - x[d]) * flap_weights_[i];
-      result[a] += r;
-      result[b] += r;
-      result[c] -= r;
-      result[d] -= r;
+    for (size_t i = 0; i < predictions_.size(); ++i) {
+      const Vec3d error = ErrorOf(i, [&](uint32_t v) { return x[v]; }) * weights_[i];
+      for (const auto& [v, factor] : predictions_[i]) result[v] += error * static_cast<double>(factor);
     }
     return result;
   }
 
   const DistanceModel& model_;
   const MeshNeighbors& neighbors_;
+  const LinearPredictions& predictions_;
   std::vector<Symmetric3> diagonal_, preconditioner_;
   Moves gradient_;
-  std::vector<double> flap_weights_;
+  std::vector<double> weights_;  // of predictions
 };
 
 // Puts back vertices that went too far from the input.
@@ -128,32 +131,16 @@ void UndoFlips(const std::vector<Vec3f>& before, const MeshNeighbors& neighbors,
 
 }  // namespace
 
-// About what Draco's coder spends, with a third of a vertex's bits in each of the three flaps that a vertex has on average.
-constexpr double kErrorScale = 4.0 / 3, kBitsScale = 0.5;
-
-RateModel RateModel::For(double lattice_distortion, size_t num_vertices) {
-  // D ~ 4^-b in the b bits of each coordinate: the slope of D over all bits.
-  constexpr double kLn2 = 0.6931471805599453;
-  return {StepFor(lattice_distortion), 2 * kLn2 * lattice_distortion / (3 * static_cast<double>(num_vertices))};
-}
-
-double RateModel::StepFor(double lattice_distortion) {
-  // Rounding alone errs by step / sqrt(12) along the normal; the descent leaves an eighth of its square.
-  constexpr double kSquaredStep = 12 * 8;
-  return std::sqrt(kSquaredStep * lattice_distortion);
-}
-
-double RateModel::BitsOfFlap(double r2) const { return kBitsScale * std::log2(1 + kErrorScale * r2 / (step * step)); }
-
-double RateModel::BitSlope(double r2) const {
-  constexpr double kLn2 = 0.6931471805599453;
-  return kBitsScale / kLn2 * kErrorScale / (step * step + kErrorScale * r2);
-}
-
 void FitToSurface(const FitTarget& target, const MeshNeighbors& neighbors, const RateModel& rate, int rounds, TriangleMesh* mesh) {
+  const bool bits_matter = rate.distortion_per_bit > 0;
+  FitToSurface(target, neighbors, rate, bits_matter ? LinearPredictions::OfFlaps(neighbors) : LinearPredictions(1), rounds, mesh);
+}
+
+void FitToSurface(const FitTarget& target, const MeshNeighbors& neighbors, const RateModel& rate, const LinearPredictions& predictions, int rounds,
+                  TriangleMesh* mesh) {
   for (int round = 0; round < rounds; ++round) {
     const DistanceModel model = target.ModelAt(*mesh, neighbors);
-    const Moves moves = RoundSystem(model, neighbors, rate, *mesh).Solve();
+    const Moves moves = RoundSystem(model, neighbors, rate, predictions, *mesh).Solve();
     const std::vector<Vec3f> before = mesh->positions;
     for (size_t v = 0; v < moves.size(); ++v) mesh->positions[v] = Vec3Cast<float>(Vec3Cast<double>(before[v]) + moves[v]);
     UndoExcess(target, before, mesh);

@@ -7,6 +7,7 @@
 #include "lacerta/surface_distance.h"
 #include "remesh/folds.h"
 #include "remesh/simplify.h"
+#include "remesh/lattice_fit.h"
 #include "remesh/mesh_fit.h"
 #include "shapes/shapes.h"
 
