@@ -77,6 +77,9 @@ class FitTarget {
   // The squared distance of a point to the input over that of how far it may be; 0 where it is near enough.
   double Excess(const Vec3f& point) const;
 
+  // How far vertices may retreat from where they were fitted, for the bytes: a part of how far they may be off; 0: any.
+  double most_retreat() const { return kMostRetreat * farthest_; }
+
   double diagonal() const { return diagonal_; }
   const TriangleMesh& mesh() const { return mesh_; }
 
@@ -88,6 +91,8 @@ class FitTarget {
 
   std::vector<FitResidual> Forward(const TriangleMesh& mesh, const TriangleTree& tree) const;
   std::vector<FitResidual> Backward(const TriangleMesh& mesh, const std::vector<AreaSample>& samples) const;
+
+  static constexpr double kMostRetreat = 0.45;
 
   const TriangleMesh& mesh_;
   TriangleTree tree_;

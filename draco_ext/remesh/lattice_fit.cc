@@ -7,6 +7,7 @@
 #include "geometry/bounding_box.h"
 #include "geometry/vertex_area_vectors.h"
 #include "remesh/folds.h"
+#include "remesh/retreat.h"
 
 namespace lacerta {
 namespace {
@@ -127,6 +128,7 @@ class LatticeDescent {
           cost += CostOfTurned(turned);
         }
         if (cost < best_cost) cost += CostOfExcess(v, p);
+        if (cost < best_cost && HasLeft(v, p)) continue;
         if (cost < best_cost) {
           best_cost = cost;
           best = p;
@@ -179,6 +181,15 @@ class LatticeDescent {
     constexpr double kBits = 20;
     const Vec3d position = Vec3Cast<double>(mesh_.positions[v]) + MoveTo(v, p);
     return kBits * target_.Excess(Vec3Cast<float>(position)) * rate_.distortion_per_bit;
+  }
+
+  // What is small and pointed gets no shorter.
+  bool HasLeft(uint32_t v, const LatticePoint& p) {
+    const Vec3d kept = moves_[v];
+    moves_[v] = MoveTo(v, p);
+    const bool has_left = HasRetreated(Vec3Cast<double>(mesh_.positions[v]), v, mesh_.triangles, neighbors_, target_.most_retreat(), [&](uint32_t u) { return Moved(u); });
+    moves_[v] = kept;
+    return has_left;
   }
 
   static constexpr double kFarthest = 3;  // steps from where the model was made

@@ -5,6 +5,7 @@
 
 #include "geometry/vertex_area_vectors.h"
 #include "remesh/folds.h"
+#include "remesh/retreat.h"
 
 namespace lacerta {
 namespace {
@@ -106,6 +107,14 @@ void UndoExcess(const FitTarget& target, const std::vector<Vec3f>& before, Trian
   }
 }
 
+// Puts back vertices that left where they were `first`.
+void UndoRetreat(const FitTarget& target, const std::vector<Vec3f>& first, const std::vector<Vec3f>& before, const MeshNeighbors& neighbors, TriangleMesh* mesh) {
+  const auto position_of = [&](uint32_t v) { return Vec3Cast<double>(mesh->positions[v]); };
+  for (uint32_t v = 0; v < before.size(); ++v) {
+    if (HasRetreated(Vec3Cast<double>(first[v]), v, mesh->triangles, neighbors, target.most_retreat(), position_of)) mesh->positions[v] = before[v];
+  }
+}
+
 // Puts back the vertices of triangles that turned over, or were folded onto a neighbor, until none is.
 void UndoFlips(const std::vector<Vec3f>& before, const MeshNeighbors& neighbors, TriangleMesh* mesh) {
   constexpr int kMostPasses = 10;
@@ -138,12 +147,14 @@ void FitToSurface(const FitTarget& target, const MeshNeighbors& neighbors, const
 
 void FitToSurface(const FitTarget& target, const MeshNeighbors& neighbors, const RateModel& rate, const LinearPredictions& predictions, int rounds,
                   TriangleMesh* mesh) {
+  const std::vector<Vec3f> first = mesh->positions;
   for (int round = 0; round < rounds; ++round) {
     const DistanceModel model = target.ModelAt(*mesh, neighbors);
     const Moves moves = RoundSystem(model, neighbors, rate, predictions, *mesh).Solve();
     const std::vector<Vec3f> before = mesh->positions;
     for (size_t v = 0; v < moves.size(); ++v) mesh->positions[v] = Vec3Cast<float>(Vec3Cast<double>(before[v]) + moves[v]);
     UndoExcess(target, before, mesh);
+    if (rate.distortion_per_bit > 0) UndoRetreat(target, first, before, neighbors, mesh);
     UndoFlips(before, neighbors, mesh);
   }
 }
