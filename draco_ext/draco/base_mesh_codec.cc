@@ -1,12 +1,8 @@
 #include "draco/base_mesh_codec.h"
 
-#include <draco/attributes/geometry_attribute.h>
-#include <draco/attributes/point_attribute.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <string>
 #include <utility>
 
@@ -14,7 +10,6 @@
 #include "common/subdivision.h"
 #include "lacerta/decoder.h"
 #include "draco/mesh_conversion.h"
-#include "draco/recoded_stream.h"
 #include "draco/smallest_stream.h"
 #include "draco/stock_stream.h"
 #include "encoder/compact_base_encoder.h"
@@ -64,33 +59,6 @@ StatusOr<IntegerMesh> ToIntegerMesh(const BaseMesh& base) {
   return result;
 }
 
-// The input vertex behind each vertex of `coded`, the decoded triangles of the stream. Draco does not tell, so the same
-// mesh is coded once more with the vertex number as a second attribute: that may change the order of the vertices but
-// not the one of triangles and corners. (IsRenumbering makes sure of it.)
-StatusOr<std::vector<uint32_t>> FindVertexMap(const IntegerMesh& base, const StockAttempt& attempt,
-                                              const std::vector<Triangle>& coded) {
-  const auto mesh = ToDracoMesh(StartingAsIn(attempt, base.mesh));
-  const auto num_vertices = static_cast<uint32_t>(base.mesh.positions.size());
-  draco::GeometryAttribute description;
-  description.Init(draco::GeometryAttribute::GENERIC, nullptr, 1, draco::DT_UINT32, false, sizeof(uint32_t), 0);
-  const int id = mesh->AddAttribute(description, /*identity_mapping=*/true, num_vertices);
-  for (uint32_t v = 0; v < num_vertices; ++v) mesh->attribute(id)->SetAttributeValue(draco::AttributeValueIndex(v), &v);
-  LACERTA_ASSIGN_OR_RETURN(const Bytes stream, EncodeIntegerPositions(*mesh, base.bits, attempt.settings));
-  LACERTA_ASSIGN_OR_RETURN(const StockMesh numbered, DecodeStockStream(stream, kNoDecodeLimits));
-  const draco::PointAttribute* const numbers = numbered.mesh->GetNamedAttribute(draco::GeometryAttribute::GENERIC);
-  if (numbers == nullptr || numbered.mesh->num_faces() != coded.size()) {
-    return InternalError("Draco lost the vertex numbers of the base mesh");
-  }
-  std::vector<uint32_t> map(num_vertices, num_vertices);
-  for (uint32_t f = 0; f < coded.size(); ++f) {
-    const draco::Mesh::Face& face = numbered.mesh->face(draco::FaceIndex(f));
-    for (size_t k = 0; k < 3; ++k) {
-      numbers->ConvertValue<uint32_t, 1>(numbers->mapped_index(face[k]), &map[coded[f][k]]);
-    }
-  }
-  return map;
-}
-
 Triangle StartingWithSmallest(Triangle t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
@@ -113,13 +81,17 @@ bool IsRenumbering(const BaseMesh& base, const BaseMesh& coded, const std::vecto
   return before == after;
 }
 
-// Puts the lattice's place in space into a stream of its integers.
-Status PlaceOnLattice(const IntegerMesh& integers, float step, Bytes* stream) {
+// In an order of its vertices.
+StatusOr<Bytes> EncodeInOrder(const PositionStream& order, const BaseMesh& base, const IntegerMesh& integers) {
   QuantizationGrid grid;
-  for (int c = 0; c < 3; ++c) grid.origin[c] = step * static_cast<float>(integers.origin[static_cast<size_t>(c)]);
-  grid.range = RangeForStep(step, integers.bits);
+  for (int c = 0; c < 3; ++c) grid.origin[c] = base.step * static_cast<float>(integers.origin[static_cast<size_t>(c)]);
+  grid.range = RangeForStep(base.step, integers.bits);
   if (!std::isfinite(grid.range)) return InvalidData("step times extent of the base lattice does not fit a float");
-  return SetQuantizationGrid(grid, stream);
+  std::vector<LatticePoint> points = base.lattice;
+  for (LatticePoint& p : points) {
+    for (size_t c = 0; c < 3; ++c) p[c] -= integers.origin[c];
+  }
+  return order.Encode(points, grid, integers.bits);
 }
 
 StatusOr<CodedBase> EncodeCompact(const BaseMesh& base) {
@@ -149,12 +121,12 @@ float ShortStep(float step) {
 StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base, BaseCoding coding) {
   if (coding == BaseCoding::kCompact) return EncodeCompact(base);
   LACERTA_ASSIGN_OR_RETURN(const IntegerMesh integers, ToIntegerMesh(base));
-  LACERTA_ASSIGN_OR_RETURN(StockAttempt attempt, SmallestEdgebreakerStream(integers.mesh, integers.bits));
+  LACERTA_ASSIGN_OR_RETURN(const StockAttempt attempt, SmallestEdgebreakerStream(integers.mesh, integers.bits));
+  LACERTA_ASSIGN_OR_RETURN(const PositionStream order, PositionStream::Create(base.triangles, base.lattice.size(), attempt));
   CodedBase result;
-  result.stream = attempt.stream;
-  LACERTA_RETURN_IF_ERROR(PlaceOnLattice(integers, base.step, &result.stream));
-  result.traversal = {attempt.settings, attempt.first_triangle, attempt.first_corner, base.triangles};
-
+  LACERTA_ASSIGN_OR_RETURN(result.stream, EncodeInOrder(order, base, integers));
+  result.vertex_map = order.DecodedVertices();
+  result.order = order.Decoded();
   LACERTA_ASSIGN_OR_RETURN(const DecodedBase decoded, DecodeBaseMesh(result.stream, kNoDecodeLimits));
   if (decoded.mesh.positions.size() != base.lattice.size() || decoded.mesh.triangles.size() != base.triangles.size()) {
     return InvalidData("Draco made " + std::to_string(decoded.mesh.positions.size()) + " vertices and " +
@@ -169,7 +141,6 @@ StatusOr<CodedBase> EncodeBaseMesh(const BaseMesh& base, BaseCoding coding) {
         "one");
   }
   result.mesh = std::move(lattice).value();
-  LACERTA_ASSIGN_OR_RETURN(result.vertex_map, FindVertexMap(integers, attempt, result.mesh.triangles));
   if (!IsRenumbering(base, result.mesh, result.vertex_map)) {
     return InvalidData("Draco changed the base mesh; keep more vertices in it");
   }
@@ -181,14 +152,8 @@ StatusOr<Bytes> RecodeBaseMesh(const CodedBase& first, const BaseMesh& moved) {
     return InvalidArgument("the base to code again has another connectivity");
   }
   if (first.coding == BaseCoding::kCompact) return RecodeCompact(moved);
-  BaseMesh as_given{moved.step, std::vector<std::array<int32_t, 3>>(moved.lattice.size()), first.traversal.triangles};
-  for (size_t v = 0; v < moved.lattice.size(); ++v) as_given.lattice[first.vertex_map[v]] = moved.lattice[v];
-  LACERTA_ASSIGN_OR_RETURN(const IntegerMesh integers, ToIntegerMesh(as_given));
-  const StockAttempt attempt{first.traversal.settings, first.traversal.first_triangle, first.traversal.first_corner, {}};
-  const auto mesh = ToDracoMesh(StartingAsIn(attempt, integers.mesh));
-  LACERTA_ASSIGN_OR_RETURN(Bytes written, EncodeIntegerPositions(*mesh, integers.bits, attempt.settings));
-  Bytes stream = RecodeStream(std::move(written));
-  LACERTA_RETURN_IF_ERROR(PlaceOnLattice(integers, moved.step, &stream));
+  LACERTA_ASSIGN_OR_RETURN(const IntegerMesh integers, ToIntegerMesh(moved));
+  LACERTA_ASSIGN_OR_RETURN(Bytes stream, EncodeInOrder(*first.order, moved, integers));
   LACERTA_ASSIGN_OR_RETURN(const DecodedBase decoded, DecodeBaseMesh(stream, kNoDecodeLimits));
   LACERTA_ASSIGN_OR_RETURN(const BaseMesh lattice, BaseMeshFromPositions(decoded.mesh, moved.step));
   if (lattice.triangles != moved.triangles || lattice.lattice != moved.lattice) {

@@ -4,10 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "draco/base_coding.h"
 #include "draco/custom_form.h"
+#include "draco/position_stream.h"
 #include "draco/stock_stream.h"
 #include "lacerta/decoder.h"
 #include "lacerta/mesh.h"
@@ -15,21 +17,13 @@
 
 namespace lacerta {
 
-// The way in which Draco walked over a base mesh; it fixes the order of the vertices and triangles that come out.
-struct BaseTraversal {
-  StockSettings settings;
-  uint32_t first_triangle = 0;
-  uint32_t first_corner = 0;
-  std::vector<Triangle> triangles;  // #F0, as they were given to EncodeBaseMesh
-};
-
 // A coded base and what every decoder gets from it. Draco renumbers vertices and triangles and rotates triangles, so
 // all that follows must be computed on `mesh`.
 struct CodedBase {
   Bytes stream;                      // edgebreaker, bitstream version 2.2; or the compact base
   BaseMesh mesh;                     // in the decoder's order; step as in the input
   std::vector<uint32_t> vertex_map;  // #V0, coded vertex -> input vertex
-  BaseTraversal traversal;           // of stock streams
+  std::optional<PositionStream> order;  // of stock streams: the one of `mesh`
   BaseCoding coding = BaseCoding::kStock;
 };
 

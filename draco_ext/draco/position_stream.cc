@@ -37,7 +37,20 @@ StatusOr<PositionStream> PositionStream::Create(const std::vector<Triangle>& tri
   PositionStream result;
   result.before_values_ = std::move(apart->before);
   result.order_ = std::move(apart->values);
+  result.value_of_decoded_ = std::move(apart->value_of_point);
   for (size_t n = 0; n < result.order_.size(); ++n) result.vertices_.push_back(VertexAt(&result.order_.values[3 * n]));
+  return result;
+}
+
+std::vector<uint32_t> PositionStream::DecodedVertices() const {
+  std::vector<uint32_t> result;
+  for (const uint32_t n : value_of_decoded_) result.push_back(vertices_[n]);
+  return result;
+}
+
+PositionStream PositionStream::Decoded() const {
+  PositionStream result = *this;
+  for (uint32_t v = 0; v < value_of_decoded_.size(); ++v) result.vertices_[value_of_decoded_[v]] = v;
   return result;
 }
 

@@ -27,6 +27,11 @@ class PositionStream {
   // What predicts them; the values themselves are none.
   const PredictableValues& order() const { return order_; }
 
+  // Of each vertex that a decoder makes, in its order: the vertex that it is.
+  std::vector<uint32_t> DecodedVertices() const;
+  // The same for vertices that are numbered as a decoder does.
+  PositionStream Decoded() const;
+
   // Those of vertices at `points` (#V).
   PredictableValues ValuesAt(const std::vector<LatticePoint>& points) const;
   // bits: of a coordinate, for points 0 .. 2^bits - 1.
@@ -36,6 +41,7 @@ class PositionStream {
   Bytes before_values_;
   std::vector<uint32_t> vertices_;
   PredictableValues order_;
+  std::vector<uint32_t> value_of_decoded_;  // vertex
 };
 
 }  // namespace lacerta

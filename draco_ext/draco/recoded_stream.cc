@@ -304,7 +304,9 @@ std::optional<StreamOfValues> TakeApart(const Bytes& stream) {
   if (!recoder.RecodeBeforeValues()) return std::nullopt;
   std::optional<PredictableValues> values = FindPredictableValues(given->decoder, 0);
   if (!values.has_value()) return std::nullopt;
-  return StreamOfValues{recoder.Result(), *std::move(values)};
+  StreamOfValues result = {recoder.Result(), *std::move(values), {}};
+  for (draco::PointIndex p(0); p < given->mesh.num_points(); ++p) result.value_of_point.push_back(given->mesh.attribute(0)->mapped_index(p).value());
+  return result;
 }
 
 }  // namespace lacerta

@@ -2,7 +2,9 @@
 #ifndef LACERTA_DRACO_RECODED_STREAM_H_
 #define LACERTA_DRACO_RECODED_STREAM_H_
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "draco/predictable_values.h"
 #include "lacerta/mesh.h"
@@ -18,6 +20,7 @@ Bytes RecodeStream(Bytes stream);
 struct StreamOfValues {
   Bytes before;             // its values, recoded; they are followed by their transform alone
   PredictableValues values;
+  std::vector<uint32_t> value_of_point;  // #P: of each point that a decoder makes
 };
 
 // None where `stream` is another one, or its attribute is exact floats.

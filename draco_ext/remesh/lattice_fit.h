@@ -9,6 +9,7 @@
 #include "lacerta/mesh.h"
 #include "remesh/distance_model.h"
 #include "remesh/mesh_neighbors.h"
+#include "remesh/point_prices.h"
 #include "remesh/rate_model.h"
 
 namespace lacerta {
@@ -25,19 +26,6 @@ struct LatticeMesh {
 
 // Every vertex at the lattice point next to it. The lattice begins at the lower corner of the mesh. step: as below.
 LatticeMesh NearestOnLattice(const TriangleMesh& mesh, double step);
-
-// What the vertices of a mesh take in a stream where they are at points of a lattice.
-class PointPrices {
- public:
-  virtual ~PointPrices() = default;
-  // All vertices are at `points` (#V).
-  virtual void Begin(const std::vector<LatticePoint>& points) = 0;
-  // v is what Bits is asked about next.
-  virtual void LookAround(uint32_t v) = 0;
-  // Bits of v and of what is predicted from it, where v is at p; or of a part of these, if that comes to `enough`.
-  virtual double Bits(const LatticePoint& p, double enough) const = 0;
-  virtual void Move(uint32_t v, const LatticePoint& p) = 0;
-};
 
 // Rounds `mesh`, at which the target's `model` was made, to the lattice of step rate.step: each vertex in turn to the point near it that is best
 // by the model and the bits, in a few sweeps; what is farther than the target allows costs more. The lattice begins at the lower corner of the mesh.
