@@ -63,8 +63,8 @@ CodedValues Code(const ParallelogramPredictor& predictor, ParallelogramChoice ch
     PutVarint(left_out[i].size(), &bytes);
     if (!left_out[i].empty()) append(EncodeBitBlock(left_out[i]));
   }
-  PutWord32(static_cast<uint32_t>(predictor.low()), &bytes);
-  PutWord32(static_cast<uint32_t>(predictor.high()), &bytes);
+  PutWord32(static_cast<uint32_t>(predictor.wrap().low()), &bytes);
+  PutWord32(static_cast<uint32_t>(predictor.wrap().high()), &bytes);
   return {std::move(choice), std::move(bytes)};
 }
 
@@ -72,13 +72,7 @@ CodedValues Code(const ParallelogramPredictor& predictor, ParallelogramChoice ch
 
 uint32_t NumUsed(uint32_t used) { return static_cast<uint32_t>(std::bitset<kMostParallelograms>(used).count()); }
 
-ParallelogramPredictor::ParallelogramPredictor(const PredictableValues& values) : values_(values) {
-  const auto [low, high] = std::minmax_element(values.values.begin(), values.values.end());
-  low_ = *low;
-  high_ = *high;
-  range_ = 1 + high_ - low_;
-  least_ = -(range_ / 2);
-  most_ = (range_ - 1) / 2;
+ParallelogramPredictor::ParallelogramPredictor(const PredictableValues& values) : values_(values), wrap_(values.values) {
   predictions_.reserve(values.parallelograms.size() * values.components);
   for (const auto& [a, b, c] : values.parallelograms) {
     for (uint32_t k = 0; k < values.components; ++k) predictions_.push_back(At(a, k) + At(b, k) - At(c, k));
@@ -97,18 +91,8 @@ void ParallelogramPredictor::Symbols(size_t n, uint32_t used, uint32_t* symbols)
       }
       prediction /= count;
     }
-    symbols[k] = Symbol(At(n, k), prediction);
+    symbols[k] = wrap_.Symbol(At(n, k), prediction);
   }
-}
-
-uint32_t ParallelogramPredictor::Symbol(int32_t value, int64_t prediction) const {
-  int64_t correction = value - std::clamp(prediction, low_, high_);
-  if (correction < least_) {
-    correction += range_;
-  } else if (correction > most_) {
-    correction -= range_;
-  }
-  return CorrectionSymbol(correction);
 }
 
 SymbolCosts::SymbolCosts(const ParallelogramPredictor& predictor, const ParallelogramChoice& choice)

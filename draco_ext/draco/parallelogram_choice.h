@@ -2,6 +2,7 @@
 #ifndef LACERTA_DRACO_PARALLELOGRAM_CHOICE_H_
 #define LACERTA_DRACO_PARALLELOGRAM_CHOICE_H_
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -28,8 +29,35 @@ struct ParallelogramChoice {
 // used: of one value.
 uint32_t NumUsed(uint32_t used);
 
-// The symbol for the correction of a prediction: 0, -1, 1, -2, 2 as 0, 1, 2, 3, 4. correction: less than 2^31 away from 0.
-inline uint32_t CorrectionSymbol(int64_t correction) { return static_cast<uint32_t>(correction < 0 ? -2 * correction - 1 : 2 * correction); }
+// Corrections of predictions as symbols: modulo the range of the values, 0, -1, 1, -2, 2 as 0, 1, 2, 3, 4.
+class Wrap {
+ public:
+  Wrap() = default;
+  explicit Wrap(const std::vector<int32_t>& values) {  // not empty
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    low_ = *low;
+    high_ = *high;
+    range_ = 1 + high_ - low_;
+    least_ = -(range_ / 2);
+    most_ = (range_ - 1) / 2;
+  }
+
+  uint32_t Symbol(int32_t value, int64_t prediction) const {
+    int64_t correction = value - std::clamp(prediction, low_, high_);
+    if (correction < least_) {
+      correction += range_;
+    } else if (correction > most_) {
+      correction -= range_;
+    }
+    return static_cast<uint32_t>(correction < 0 ? -2 * correction - 1 : 2 * correction);
+  }
+
+  int32_t low() const { return static_cast<int32_t>(low_); }
+  int32_t high() const { return static_cast<int32_t>(high_); }
+
+ private:
+  int64_t low_ = 0, high_ = 0, range_ = 1, least_ = 0, most_ = 0;
+};
 
 // Symbols of values of which parallelograms are chosen.
 class ParallelogramPredictor {
@@ -38,19 +66,17 @@ class ParallelogramPredictor {
   explicit ParallelogramPredictor(const PredictableValues& values);
 
   const PredictableValues& values() const { return values_; }
-  int32_t low() const { return static_cast<int32_t>(low_); }  // of all components
-  int32_t high() const { return static_cast<int32_t>(high_); }
+  const Wrap& wrap() const { return wrap_; }
 
   // Of the n-th value, predicted by the mean of the parallelograms of `used`; by the value before where there are none.
   void Symbols(size_t n, uint32_t used, uint32_t* symbols) const;
 
  private:
   int32_t At(size_t n, uint32_t k) const { return values_.values[n * values_.components + k]; }
-  uint32_t Symbol(int32_t value, int64_t prediction) const;
 
   const PredictableValues& values_;
-  int64_t low_ = 0, high_ = 0, range_ = 1, least_ = 0, most_ = 0;  // of corrections, which are modulo the range of the values
-  std::vector<int32_t> predictions_;                               // of each parallelogram
+  const Wrap wrap_;
+  std::vector<int32_t> predictions_;  // of each parallelogram
 };
 
 // What symbols and flags take in a stream where they are as frequent as they were in one before, bits.

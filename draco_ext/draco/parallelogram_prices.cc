@@ -39,7 +39,9 @@ ParallelogramPrices::ParallelogramPrices(const PositionStream& stream, size_t nu
 void ParallelogramPrices::Begin(const std::vector<LatticePoint>& points) {
   values_ = stream_.ValuesAt(points);
   choice_ = CodeByParallelograms(values_).choice;
-  costs_.emplace(ParallelogramPredictor(values_), choice_);
+  const ParallelogramPredictor predictor(values_);
+  wrap_ = predictor.wrap();
+  costs_.emplace(predictor, choice_);
 }
 
 ParallelogramPrices::Part ParallelogramPrices::PartOf(uint32_t n, uint32_t v) const {
@@ -73,7 +75,7 @@ double ParallelogramPrices::BitsOf(const Dependent& dependent, const LatticePoin
   for (uint32_t i = 0; i < dependent.offers; ++i) predictions[i] = dependent.parallelograms[i].At(p);
   const auto bits_by = [&](const LatticePoint& sum, int32_t count, uint32_t num_used) {
     std::array<uint32_t, 3> symbols;
-    for (size_t k = 0; k < 3; ++k) symbols[k] = CorrectionSymbol(value[k] - sum[k] / count);
+    for (size_t k = 0; k < 3; ++k) symbols[k] = wrap_.Symbol(value[k], sum[k] / count);
     return costs_->Of(symbols.data(), num_used, dependent.offers);
   };
   const LatticePoint before = dependent.before.At(p);

@@ -52,6 +52,7 @@ class ParallelogramPrices : public PointPrices {
   ByVertex dependents_;  // values that are at a vertex, or predicted from it
   PredictableValues values_;
   ParallelogramChoice choice_;
+  Wrap wrap_;
   std::optional<SymbolCosts> costs_;
   std::vector<Dependent> around_;  // the vertex looked at
 };

@@ -34,42 +34,46 @@ void VisitExtensions(const Json& json, const std::function<void(const Json&)>& v
   }
 }
 
+void Count(const Json& references, std::vector<uint64_t>* users) {
+  VisitIntegers(references, [&](const Json& reference) {
+    const uint64_t index = *AsIndex(&reference);
+    if (index < users->size()) ++(*users)[static_cast<size_t>(index)];
+  });
+}
+
 }  // namespace
 
-AccessorPool::AccessorPool(const GltfDocument& document, const std::vector<Place>& geometries)
-    : users_(static_cast<size_t>(ArraySize(document.json, "accessors")), 0) {
-  for (const Place& place : geometries) {
-    const Json& primitive = PrimitiveAt(document, place);
-    for (const char* key : {"attributes", "indices", "targets"}) {
-      if (const Json* references = Find(primitive, key); references != nullptr) Count(*references);
-    }
-  }
+std::vector<uint64_t> CountOtherUsers(const GltfDocument& document) {
+  std::vector<uint64_t> users(static_cast<size_t>(ArraySize(document.json, "accessors")), 0);
   for (uint64_t i = 0; i < ArraySize(document.json, "skins"); ++i) {
     if (const Json* matrices = Find(*FindElement(document.json, "skins", i), "inverseBindMatrices");
         matrices != nullptr) {
-      Count(*matrices);
+      Count(*matrices, &users);
     }
   }
   for (uint64_t i = 0; i < ArraySize(document.json, "animations"); ++i) {
     if (const Json* samplers = Find(*FindElement(document.json, "animations", i), "samplers"); samplers != nullptr) {
-      Count(*samplers);
+      Count(*samplers, &users);
     }
   }
   // Extensions of nodes and the like; too many is better than too few. Those of primitives that hold geometry are
   // looked at by ReasonToKeep, and Draco's own numbers are no accessors.
-  VisitExtensions(document.json, [this](const Json& extensions) {
+  VisitExtensions(document.json, [&](const Json& extensions) {
     if (!extensions.is_object()) return;
     for (const auto& [name, value] : extensions.items()) {
-      if (!RefersToNoData(name)) Count(value);
+      if (!RefersToNoData(name)) Count(value, &users);
     }
   });
+  return users;
 }
 
-void AccessorPool::Count(const Json& references) {
-  VisitIntegers(references, [this](const Json& reference) {
-    const uint64_t index = *AsIndex(&reference);
-    if (index < users_.size()) ++users_[static_cast<size_t>(index)];
-  });
+AccessorPool::AccessorPool(const GltfDocument& document, const std::vector<Place>& geometries) : users_(CountOtherUsers(document)) {
+  for (const Place& place : geometries) {
+    const Json& primitive = PrimitiveAt(document, place);
+    for (const char* key : {"attributes", "indices", "targets"}) {
+      if (const Json* references = Find(primitive, key); references != nullptr) Count(*references, &users_);
+    }
+  }
 }
 
 void AccessorPool::ReleaseOne(const Json& reference, GltfDocument* document) {

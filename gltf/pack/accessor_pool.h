@@ -13,9 +13,12 @@
 
 namespace lacerta {
 
+// By accessor: how often skins, animations and extensions refer to it, or may.
+std::vector<uint64_t> CountOtherUsers(const GltfDocument& document);
+
 class AccessorPool {
  public:
-  // Counts who refers to which accessor: `geometries` (one primitive of each), skins, animations and extensions.
+  // Counts who refers to which accessor: `geometries` (one primitive of each) and others.
   AccessorPool(const GltfDocument& document, const std::vector<Place>& geometries);
 
   // The geometry of `primitive` needs its accessors no more, those of its morph targets included if asked. Call once per
@@ -29,7 +32,6 @@ class AccessorPool {
   const std::set<uint64_t>& released_views() const { return released_views_; }
 
  private:
-  void Count(const Json& references);
   void ReleaseOne(const Json& reference, GltfDocument* document);
 
   std::vector<uint64_t> users_;

@@ -10,15 +10,19 @@
 #include "document/meshopt.h"
 #include "document/normals.h"
 #include "extension/progressive.h"
+#include "pack/accessor_pool.h"
 #include "pack/repair.h"
 #include "pack/unused_attributes.h"
 
 namespace lacerta {
 namespace {
 
-// Of an accessor that takes `bytes`, or where its view is compressed its part of that.
-uint64_t SizeOf(const GltfDocument& document, const Json* reference, const AccessorData& data, uint64_t bytes) {
-  const Json* accessor = FindElement(document.json, "accessors", AsIndex(reference).value_or(~uint64_t{0}));
+// Of an accessor that takes `bytes`, or where its view is compressed its part of that; none if it stays whatever becomes of the primitive.
+// other_users: by accessor.
+uint64_t SizeOf(const GltfDocument& document, const std::vector<uint64_t>& other_users, const Json* reference, const AccessorData& data, uint64_t bytes) {
+  const uint64_t index = AsIndex(reference).value_or(~uint64_t{0});
+  if (index < other_users.size() && other_users[static_cast<size_t>(index)] > 0) return 0;
+  const Json* accessor = FindElement(document.json, "accessors", index);
   const std::optional<uint64_t> view = accessor == nullptr ? std::nullopt : AsIndex(Find(*accessor, "bufferView"));
   const std::optional<double> share = view.has_value() ? CompressedShare(document, *view) : std::nullopt;
   if (!share.has_value()) return bytes;
@@ -27,12 +31,13 @@ uint64_t SizeOf(const GltfDocument& document, const Json* reference, const Acces
   return static_cast<uint64_t>(*share * static_cast<double>(data.count * stride));
 }
 
-uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primitive& primitive, const std::vector<MorphTarget>& targets) {
+uint64_t StoredBytes(const GltfDocument& document, const std::vector<uint64_t>& other_users, const Json& json, const Primitive& primitive,
+                     const std::vector<MorphTarget>& targets) {
   uint64_t sum = 0;
   for (size_t t = 0; t < targets.size(); ++t) {
     const Json& references = *FindElement(json, "targets", t);
     for (const Attribute& attribute : targets[t]) {
-      sum += SizeOf(document, Find(references, attribute.name.c_str()), attribute.data, StoredSize(attribute.data));
+      sum += SizeOf(document, other_users, Find(references, attribute.name.c_str()), attribute.data, StoredSize(attribute.data));
     }
   }
   const Json* draco = FindExtension(json, kDracoName);
@@ -44,11 +49,11 @@ uint64_t StoredBytes(const GltfDocument& document, const Json& json, const Primi
   for (const Attribute& attribute : primitive.attributes) {
     if (draco != nullptr && Find(*Find(*draco, "attributes"), attribute.name.c_str()) != nullptr) continue;
     const Json* reference = Find(*Find(json, "attributes"), attribute.name.c_str());
-    sum += SizeOf(document, reference, attribute.data, attribute.data.bytes.size());
+    sum += SizeOf(document, other_users, reference, attribute.data, attribute.data.bytes.size());
   }
   if (const Json* index = Find(json, "indices"); draco == nullptr && AsIndex(index).has_value()) {
     const StatusOr<AccessorData> indices = ReadAccessor(document, *AsIndex(index));
-    if (indices.ok()) sum += SizeOf(document, index, indices.value(), indices.value().bytes.size());
+    if (indices.ok()) sum += SizeOf(document, other_users, index, indices.value(), indices.value().bytes.size());
   }
   return sum;
 }
@@ -109,7 +114,7 @@ void TakeOff(const DroppedAttributes& dropped, const GltfDocument& document, Sou
 }
 
 // source: its places are set.
-Status ReadSource(const GltfDocument& document, const DroppedAttributes& dropped, Source* source) {
+Status ReadSource(const GltfDocument& document, const std::vector<uint64_t>& other_users, const DroppedAttributes& dropped, Source* source) {
   const Json& json = PrimitiveAt(document, source->places[0]);
   source->reason = ReasonToKeep(json);
   if (!source->reason.empty()) return Status();
@@ -121,7 +126,7 @@ Status ReadSource(const GltfDocument& document, const DroppedAttributes& dropped
     if (!status.ok()) return status.code() == StatusCode::kUnsupported ? Status() : status;
   }
   LACERTA_RETURN_IF_ERROR(CheckFinite(json, primitive.value(), targets.value()));
-  source->stored_bytes = StoredBytes(document, json, primitive.value(), targets.value());
+  source->stored_bytes = StoredBytes(document, other_users, json, primitive.value(), targets.value());
   source->primitive = std::move(primitive).value();
   source->targets = std::move(targets).value();
   RoundAnew(&*source->primitive);
@@ -213,12 +218,13 @@ StatusOr<std::vector<MorphTarget>> ReadTargets(const GltfDocument& document, con
 }
 
 StatusOr<std::vector<Source>> ReadSources(const GltfDocument& document, const DroppedAttributes& dropped) {
+  const std::vector<uint64_t> other_users = CountOtherUsers(document);
   std::vector<Source> sources;
   for (const std::vector<Place>& places : GroupByGeometry(document)) {
     Source source;
     source.places = places;
     source.geometries = {places[0]};
-    const Status status = ReadSource(document, dropped, &source);
+    const Status status = ReadSource(document, other_users, dropped, &source);
     if (!status.ok()) return status.WithContext(PlaceName(document, places[0]));
     sources.push_back(std::move(source));
   }

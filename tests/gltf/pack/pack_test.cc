@@ -482,7 +482,7 @@ TEST(Pack, NothingGrowsByItsDescription) {
     TriangleMesh mesh;
     int places;
     bool is_compressed;
-  } kCases[] = {{WavySphere(3, 4), 1, false}, {WavySphere(13, 22), 1, true}, {WavySphere(13, 22), 2, true}, {WavySphere(13, 22), 80, false}};
+  } kCases[] = {{WavySphere(3, 4), 1, false}, {WavySphere(13, 22), 1, true}, {WavySphere(13, 22), 2, true}, {WavySphere(13, 22), 60, false}};
   for (const auto& a_case : kCases) {
     AssetBuilder builder;
     const Json primitive = builder.Primitive(a_case.mesh);

@@ -28,6 +28,25 @@ TEST(Source, EqualContentIsOneSource) {
   EXPECT_EQ(sources[1].places[0].mesh, 2u);
 }
 
+// Where an extension, or a skin, may refer to an accessor, it stays beside what takes its place: nothing is saved there.
+TEST(Source, WhatOthersHoldIsNotCountedAsStored) {
+  AssetBuilder builder;
+  const TriangleMesh ball = WavySphere(6, 8);
+  Json primitive = builder.Primitive(ball);
+  builder.AddMesh("a", Json::array({primitive}));
+  GltfDocument& document = builder.document();
+  document.json.erase("materials");  // one of them has an unknown extension
+  const auto stored = [&] { return ReadSources(document).value()[0].stored_bytes; };
+  const uint64_t all = stored(), positions = sizeof(Vec3f) * ball.positions.size();
+  EXPECT_EQ(all, positions + 2 * 3 * ball.triangles.size());
+  document.json["nodes"][0]["extensions"]["KHR_something"]["from"] = primitive["attributes"]["POSITION"];
+  EXPECT_EQ(stored(), all);  // Khronos has none that does
+  document.json["nodes"][0]["extensions"]["VENDOR_something"]["from"] = primitive["attributes"]["POSITION"];
+  EXPECT_EQ(stored(), all - positions);
+  document.json["skins"] = Json::array({{{"inverseBindMatrices", primitive["indices"]}}});
+  EXPECT_EQ(stored(), 0u);
+}
+
 TEST(Source, ReadsSparseAndQuantizedAccessors) {
   AssetBuilder builder;
   GltfDocument& document = builder.document();
