@@ -95,6 +95,37 @@ TEST_F(ZeroLevelCandidateTest, TheInputNeedsNoFit) {
   EXPECT_GT(coding.distortion, step * step / 1200);
 }
 
+// The order of the stream, and what predicts what in it, is worth some percent at the same distance.
+TEST_F(ZeroLevelCandidateTest, FitsForTheStreamTakeFewerBytes) {
+  const TriangleMesh simplified = SimplificationSequence(mesh_).MeshWith(500);
+  ZeroLevelCandidate candidate(target_, simplified, Source::kSimplified);
+  const double added = candidate.fit_distortion(), step = RateModel::StepFor(added);
+  candidate.FitForRate(added, 2);
+  const ZeroLevelCandidate::Coding usual = candidate.Code(step, 3, CodingEffort::kFull).value();
+  candidate.FitForStream(step);
+  for (const CodingEffort effort : {CodingEffort::kQuick, CodingEffort::kFull}) {
+    const ZeroLevelCandidate::Coding known = candidate.Code(step, 3, effort).value();
+    EXPECT_LT(known.bytes, 0.985 * static_cast<double>(usual.bytes));
+    EXPECT_GT(known.bytes, 0.8 * static_cast<double>(usual.bytes));
+    EXPECT_LT(known.distortion, 1.1 * usual.distortion);
+    const double measured = SquaredDistance(known.coded.mesh);
+    EXPECT_NEAR(known.distortion, measured, 0.15 * measured);
+    EXPECT_EQ(known.coded.mesh.triangles.size(), candidate.num_triangles());
+  }
+}
+
+// What is cut, or coded triangle by triangle, is as whole as it was.
+TEST_F(ZeroLevelCandidateTest, FitsForTheStreamLeaveNoTriangleOut) {
+  for (const TriangleMesh& mesh : {shapes::Pinched(), shapes::NonManifoldEdge(), shapes::MoebiusBand(12), shapes::Scattered(shapes::Icosphere(0), 20)}) {
+    const FitTarget target(mesh, 2000);
+    ZeroLevelCandidate candidate(target, mesh, Source::kInput);
+    candidate.FitForStream(0.01);
+    const ZeroLevelCandidate::Coding coding = candidate.Code(0.01, 2, CodingEffort::kFull).value();
+    EXPECT_EQ(coding.coded.mesh.triangles.size(), mesh.triangles.size());
+    EXPECT_LT(coding.distortion, 0.01 * 0.01);
+  }
+}
+
 // More triangles than are fitted are put onto the lattice as they are.
 TEST_F(ZeroLevelCandidateTest, LargeMeshesAreRounded) {
   const TriangleMesh large = shapes::BumpySphere(6, 0.2f);

@@ -26,6 +26,44 @@ double Bits(const TriangleMesh& mesh, const MeshNeighbors& neighbors, const Rate
   return sum;
 }
 
+// Where it is known what predicts what, nothing is done for the flaps that predict nothing.
+TEST(MeshFitTest, KnownPredictionsGetBetterThanUnknownOnes) {
+  const TriangleMesh mesh = shapes::BumpySphere(5, 0.2f);
+  const FitTarget target(mesh, 10000);
+  TriangleMesh simplified = SimplificationSequence(mesh).MeshWith(400);
+  const MeshNeighbors neighbors(simplified);
+  FitToSurface(target, neighbors, RateModel(), 3, &simplified);
+  // Of each vertex one flap that it is across in, if there is any.
+  LinearPredictions known(LinearPredictions::kFlapsPerVertex);
+  std::vector<bool> is_predicted(simplified.positions.size(), false);
+  for (const auto& [a, b, c, d] : neighbors.flaps) {
+    if (is_predicted[d]) continue;
+    is_predicted[d] = true;
+    known.Add(d, 1);
+    known.Add(a, -1);
+    known.Add(b, -1);
+    known.Add(c, 1);
+    known.EndPrediction();
+  }
+  const RateModel rate = RateModel::For(1e-4, simplified.positions.size());
+  TriangleMesh by_known = simplified, by_flaps = simplified;
+  FitToSurface(target, neighbors, rate, known, 3, &by_known);
+  FitToSurface(target, neighbors, rate, 3, &by_flaps);
+  const auto bits = [&](const TriangleMesh& m) {
+    double sum = 0;
+    for (size_t i = 0; i < known.size(); ++i) {
+      Vec3d error;
+      for (const auto& [v, factor] : known[i]) error += Vec3Cast<double>(m.positions[v]) * static_cast<double>(factor);
+      sum += LinearPredictions::kFlapsPerVertex * rate.BitsOfFlap(SquaredNorm(error));
+    }
+    return sum;
+  };
+  EXPECT_LT(bits(by_flaps), bits(simplified));
+  EXPECT_LT(bits(by_known), 0.97 * bits(by_flaps));
+  EXPECT_GT(bits(by_known), 0.5 * bits(by_flaps));
+  EXPECT_EQ(LinearPredictions::OfFlaps(neighbors).size(), neighbors.flaps.size());
+}
+
 TEST(MeshFitTest, BitSlopeIsTheDerivative) {
   const RateModel rate{0.1, 1};
   EXPECT_EQ(rate.BitsOfFlap(0), 0);
