@@ -32,6 +32,7 @@ ZeroLevelCandidate::ZeroLevelCandidate(const FitTarget& target, TriangleMesh mes
 
 void ZeroLevelCandidate::FitForRate(double lattice_distortion, int rounds) {
   if (!neighbors_) return;
+  order_.reset();
   const RateModel rate = RateModel::For(lattice_distortion, mesh_.positions.size());
   distortion_per_bit_ = rate.distortion_per_bit;
   if (source_ != Source::kInput) {
@@ -51,6 +52,7 @@ double ZeroLevelCandidate::StepNear(double step) const {
 void ZeroLevelCandidate::FitForStream(double wanted_step) {
   if (!neighbors_) return;
   const double step = StepNear(wanted_step);
+  order_.reset();
   double distortion = 0;
   LatticeMesh lattice = FitLattice(step, 1, &distortion);
   StatusOr<PositionStream> order = SmallestOrder(lattice);
