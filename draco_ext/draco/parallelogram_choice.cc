@@ -59,7 +59,7 @@ CodedValues Code(const ParallelogramPredictor& predictor, ParallelogramChoice ch
   const Bytes block = EncodeSymbolBlock(symbols, values.components);
   choice.scheme = block.front() == draco::SYMBOL_CODING_TAGGED ? Scheme::kTagged : Scheme::kRaw;
   append(block);
-  for (uint32_t i = 1; has_flags && i <= kMostParallelograms; ++i) {
+  for (size_t i = 1; has_flags && i < left_out.size(); ++i) {
     PutVarint(left_out[i].size(), &bytes);
     if (!left_out[i].empty()) append(EncodeBitBlock(left_out[i]));
   }
@@ -114,7 +114,7 @@ SymbolCosts::SymbolCosts(const ParallelogramPredictor& predictor, const Parallel
   for (double& s : symbols_) s = s == 0 ? unseen_ : std::log2(num_values * components_ / s) + kTableBits / 2 / s;
   for (uint32_t l = 0; l < lengths_.size(); ++l) lengths_[l] = std::log2(num_values / (lengths_[l] + kLittle)) + l * components_;
   if (choice.prediction == Prediction::kParallelogram) return;
-  for (uint32_t i = 1; i <= kMostParallelograms; ++i) {
+  for (size_t i = 1; i < offered.size(); ++i) {
     used_[i] = std::log2((offered[i] + 2) / (used[i] + 1));
     left_out_[i] = std::log2((offered[i] + 2) / (offered[i] - used[i] + 1));
   }

@@ -105,7 +105,7 @@ double ParallelogramPrices::Bits(const LatticePoint& p, double enough) const {
 
 void ParallelogramPrices::Move(uint32_t v, const LatticePoint& p) {
   for (const uint32_t n : dependents_[v]) {
-    if (stream_.vertices()[n] == v) std::copy(p.begin(), p.end(), values_.values.begin() + static_cast<ptrdiff_t>(3 * n));
+    if (stream_.vertices()[n] == v) std::copy(p.begin(), p.end(), values_.values.begin() + ptrdiff_t{3} * n);
   }
 }
 
