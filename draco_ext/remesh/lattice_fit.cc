@@ -113,7 +113,8 @@ class LatticeDescent {
     const LatticePoint current = lattice_[v];
     const int current_turned = NumTurned(v);
     LatticePoint best = current;
-    double best_cost = Cost(v, slope, best, std::numeric_limits<double>::infinity()) + CostOfTurned(current_turned) + CostOfExcess(v, best);
+    const double current_excess = CostOfExcess(v, current);
+    double best_cost = Cost(v, slope, best, std::numeric_limits<double>::infinity()) + CostOfTurned(current_turned) + current_excess;
     const Vec3d exact = (Vec3Cast<double>(mesh_.positions[v]) + optimum - origin_) * (1 / rate_.step);
     for (const LatticePoint& center : {current, NearestPoint(exact)}) {
       for (int i = 0; i < 27; ++i) {
@@ -127,12 +128,12 @@ class LatticeDescent {
           if (turned > current_turned) continue;
           cost += CostOfTurned(turned);
         }
-        if (cost < best_cost) cost += CostOfExcess(v, p);
-        if (cost < best_cost && HasLeft(v, p)) continue;
-        if (cost < best_cost) {
-          best_cost = cost;
-          best = p;
-        }
+        if (cost >= best_cost) continue;
+        const double excess = CostOfExcess(v, p);
+        cost += excess;
+        if (cost >= best_cost || (excess >= current_excess && HasLeft(v, p))) continue;
+        best_cost = cost;
+        best = p;
       }
     }
     moves_[v] = MoveTo(v, best);

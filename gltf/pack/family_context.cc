@@ -77,7 +77,8 @@ uint64_t FamilyContext::BytesBefore() const {
   uint64_t sum = 0;
   for (const size_t member : members()) {
     const Source& source = scene->sources[member];
-    sum += source.geometries.size() * source.stored_bytes;
+    const uint64_t stored = source.geometries.size() * source.stored_bytes;
+    sum += stored - std::min(stored, source.held_bytes);
   }
   return sum;
 }

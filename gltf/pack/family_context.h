@@ -35,7 +35,7 @@ struct FamilyContext {
   bool MayRoundTargets() const { return options->fallback == Fallback::kDraco && !options->float_targets; }
   StatusOr<std::optional<Skin>> FindSkin() const;  // what moves the family; empty where nothing does
   TexelScale Scale() const;
-  uint64_t BytesBefore() const;    // of all members' data, as often as the asset holds it
+  uint64_t BytesBefore() const;    // of all members' data, as often as the asset holds it, but for what stays whatever becomes of them
   uint64_t DracoJsonBytes() const;  // about what JSON KHR_draco_mesh_compression takes at all places that show the family
   uint64_t ProgressiveJsonBytes() const;  // the same of LACERTA_mesh_progressive beside it
 };

@@ -17,12 +17,9 @@
 namespace lacerta {
 namespace {
 
-// Of an accessor that takes `bytes`, or where its view is compressed its part of that; none if it stays whatever becomes of the primitive.
-// other_users: by accessor.
-uint64_t SizeOf(const GltfDocument& document, const std::vector<uint64_t>& other_users, const Json* reference, const AccessorData& data, uint64_t bytes) {
-  const uint64_t index = AsIndex(reference).value_or(~uint64_t{0});
-  if (index < other_users.size() && other_users[static_cast<size_t>(index)] > 0) return 0;
-  const Json* accessor = FindElement(document.json, "accessors", index);
+// Of an accessor that takes `bytes`, or where its view is compressed its part of that.
+uint64_t SizeOf(const GltfDocument& document, const Json* reference, const AccessorData& data, uint64_t bytes) {
+  const Json* accessor = FindElement(document.json, "accessors", AsIndex(reference).value_or(~uint64_t{0}));
   const std::optional<uint64_t> view = accessor == nullptr ? std::nullopt : AsIndex(Find(*accessor, "bufferView"));
   const std::optional<double> share = view.has_value() ? CompressedShare(document, *view) : std::nullopt;
   if (!share.has_value()) return bytes;
@@ -31,31 +28,35 @@ uint64_t SizeOf(const GltfDocument& document, const std::vector<uint64_t>& other
   return static_cast<uint64_t>(*share * static_cast<double>(data.count * stride));
 }
 
-uint64_t StoredBytes(const GltfDocument& document, const std::vector<uint64_t>& other_users, const Json& json, const Primitive& primitive,
-                     const std::vector<MorphTarget>& targets) {
-  uint64_t sum = 0;
+// Sets the bytes of `source`. other_users: by accessor.
+void CountBytes(const GltfDocument& document, const std::vector<uint64_t>& other_users, const Json& json, const Primitive& primitive,
+                const std::vector<MorphTarget>& targets, Source* source) {
+  const auto add = [&](const Json* reference, const AccessorData& data, uint64_t stored) {
+    const uint64_t bytes = SizeOf(document, reference, data, stored), index = AsIndex(reference).value_or(~uint64_t{0});
+    source->stored_bytes += bytes;
+    if (index < other_users.size() && other_users[static_cast<size_t>(index)] > 0) source->held_bytes += bytes;
+  };
   for (size_t t = 0; t < targets.size(); ++t) {
     const Json& references = *FindElement(json, "targets", t);
     for (const Attribute& attribute : targets[t]) {
-      sum += SizeOf(document, other_users, Find(references, attribute.name.c_str()), attribute.data, StoredSize(attribute.data));
+      add(Find(references, attribute.name.c_str()), attribute.data, StoredSize(attribute.data));
     }
   }
   const Json* draco = FindExtension(json, kDracoName);
   if (draco != nullptr) {
     const StatusOr<Span<const uint8_t>> bytes =
         BufferViewBytes(document, AsIndex(Find(*draco, "bufferView")).value_or(0));
-    sum += bytes.ok() ? bytes.value().size() : 0;
+    source->stored_bytes += bytes.ok() ? bytes.value().size() : 0;
   }
   for (const Attribute& attribute : primitive.attributes) {
     if (draco != nullptr && Find(*Find(*draco, "attributes"), attribute.name.c_str()) != nullptr) continue;
     const Json* reference = Find(*Find(json, "attributes"), attribute.name.c_str());
-    sum += SizeOf(document, other_users, reference, attribute.data, attribute.data.bytes.size());
+    add(reference, attribute.data, attribute.data.bytes.size());
   }
   if (const Json* index = Find(json, "indices"); draco == nullptr && AsIndex(index).has_value()) {
     const StatusOr<AccessorData> indices = ReadAccessor(document, *AsIndex(index));
-    if (indices.ok()) sum += SizeOf(document, other_users, index, indices.value(), indices.value().bytes.size());
+    if (indices.ok()) add(index, indices.value(), indices.value().bytes.size());
   }
-  return sum;
 }
 
 void RoundAnew(Primitive* primitive) {
@@ -126,7 +127,7 @@ Status ReadSource(const GltfDocument& document, const std::vector<uint64_t>& oth
     if (!status.ok()) return status.code() == StatusCode::kUnsupported ? Status() : status;
   }
   LACERTA_RETURN_IF_ERROR(CheckFinite(json, primitive.value(), targets.value()));
-  source->stored_bytes = StoredBytes(document, other_users, json, primitive.value(), targets.value());
+  CountBytes(document, other_users, json, primitive.value(), targets.value(), source);
   source->primitive = std::move(primitive).value();
   source->targets = std::move(targets).value();
   RoundAnew(&*source->primitive);
@@ -175,6 +176,7 @@ std::vector<Source> Merge(std::vector<Source> sources) {
     } else {
       Source& known = merged[same];
       known.places.insert(known.places.end(), source.places.begin(), source.places.end());
+      known.held_bytes += source.held_bytes;
       known.geometries.insert(known.geometries.end(), source.geometries.begin(), source.geometries.end());
     }
   }

@@ -24,7 +24,8 @@ struct Source {
   std::optional<Primitive> primitive;  // empty: cannot be compressed, `reason` says why
   std::vector<MorphTarget> targets;
   std::string reason;
-  uint64_t stored_bytes = 0;  // of attributes, indices and targets in one set of accessors, but for what others hold, too; 0 where there is no primitive
+  uint64_t stored_bytes = 0;  // of attributes, indices and targets in one set of accessors; 0 where there is no primitive
+  uint64_t held_bytes = 0;    // of these in all sets: what skins, animations or extensions refer to, too, or may
 };
 
 // Why a primitive has to stay as it is whatever it holds; empty when it need not.
