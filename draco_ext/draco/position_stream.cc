@@ -27,6 +27,7 @@ uint32_t VertexAt(const int32_t* point) {
 }  // namespace
 
 StatusOr<PositionStream> PositionStream::Create(const std::vector<Triangle>& triangles, size_t num_vertices, const StockAttempt& attempt) {
+  if (triangles.empty()) return InvalidData("mesh has no triangles");
   if (num_vertices > size_t{1} << (3 * kNumberBits)) return InvalidData(std::to_string(num_vertices) + " vertices; a stock stream takes up to 2^30");
   TriangleMesh numbered;
   numbered.triangles = triangles;

@@ -18,7 +18,7 @@ namespace lacerta {
 class PositionStream {
  public:
   // Of these triangles over vertices 0 .. num_vertices - 1 as Draco codes them by edgebreaker: with the settings and from the start of `attempt`. Its order
-  // does not depend on positions. Fails where Draco refuses the mesh.
+  // does not depend on positions. Fails on no triangles, and where Draco refuses the mesh.
   static StatusOr<PositionStream> Create(const std::vector<Triangle>& triangles, size_t num_vertices, const StockAttempt& attempt);
 
   // Of each value that the stream has, in its order: the vertex whose position it is. Several of one vertex where Draco cuts the mesh there; none of a

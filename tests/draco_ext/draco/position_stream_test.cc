@@ -113,8 +113,8 @@ TEST(PositionStream, TakesNoMoreThanDraco) {
   }
 }
 
-TEST(PositionStream, FailsOnWhatDracoRefuses) {
-  EXPECT_FALSE(PositionStream::Create({}, 3, {Attempts()[0].settings, 0, 0, {}}).ok());
+TEST(PositionStream, FailsOnNothing) {
+  EXPECT_EQ(PositionStream::Create({}, 3, {Attempts()[0].settings, 0, 0, {}}).status().code(), StatusCode::kInvalidData);
 }
 
 }  // namespace
