@@ -1,8 +1,6 @@
 #include "draco/parallelogram_prices.h"
 
 #include <algorithm>
-#include <limits>
-#include <utility>
 
 namespace lacerta {
 namespace {

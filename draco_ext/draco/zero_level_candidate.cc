@@ -53,14 +53,13 @@ void ZeroLevelCandidate::FitForStream(double wanted_step) {
   if (!neighbors_) return;
   const double step = StepNear(wanted_step);
   order_.reset();
-  double distortion = 0;
-  LatticeMesh lattice = FitLattice(step, 1, &distortion);
+  const RateModel rate{step, distortion_per_bit_};
+  LatticeMesh lattice = FitToLattice(target_, mesh_, model_, *neighbors_, rate);
   StatusOr<PositionStream> order = SmallestOrder(lattice);
   if (!order.ok()) return;
   order_ = std::move(order).value();
   if (source_ == Source::kInput) return;
   ParallelogramPrices prices(*order_, mesh_.positions.size());
-  const RateModel rate{step, distortion_per_bit_};
   constexpr int kChoices = 2, kRounds = 2;
   for (int i = 0; i < kChoices; ++i) {
     prices.Begin(lattice.lattice);
