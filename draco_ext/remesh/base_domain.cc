@@ -30,6 +30,8 @@ void BaseDomain::BuildTables() {
   topology_ = BuildTopology(num_vertices(), triangles_).value();  // a manifold stays one through every collapse
   tags_ = FindTags();
   if (!tags_.empty()) topology_ = BuildTopology(num_vertices(), triangles_, tags_).value();
+  slides_ = DomainSlides(topology_);
+  slid_to_.assign(num_vertices(), {});
 }
 
 BaseTags BaseDomain::FindTags() const {
@@ -89,6 +91,14 @@ void BaseDomain::Join(std::vector<uint32_t> joined) {
   topology_ = BuildTopology(num_vertices(), triangles_, tags_).value();
 }
 
+void BaseDomain::Slide(const std::vector<DomainPoint>& to, const std::vector<Vec3f>& positions) {
+  std::vector<Vec3d> before;
+  for (const Vec3f& p : positions) before.push_back(Vec3Cast<double>(p));
+  for (uint32_t v = 0; v < num_vertices(); ++v) {
+    if (to[v].face != kNone && slides_.Move(v, OnBaseFace(history_.Forward(to[v], cut_)), topology_, before)) slid_to_[v] = to[v];
+  }
+}
+
 std::vector<Vec3f> BaseDomain::PositionsOn(const TriangleMesh& input) const {
   std::vector<Vec3f> positions;
   for (const uint32_t v : input_vertex_) positions.push_back(v == kNone ? Vec3f() : input.positions[v]);
@@ -103,16 +113,17 @@ DomainPoint BaseDomain::OnBaseFace(const DomainPoint& p) const {
 }
 
 DomainPoint BaseDomain::FromInput(const DomainPoint& on_input) const {
-  return OnBaseFace(history_.Forward({on_input.face, ClampWeights(on_input.barycentric)}, cut_));
+  return slides_.Forward(OnBaseFace(history_.Forward({on_input.face, ClampWeights(on_input.barycentric)}, cut_)));
 }
 
 void BaseDomain::FromInput(std::vector<DomainPoint>* points) const {
   for (DomainPoint& p : *points) p.barycentric = ClampWeights(p.barycentric);
   history_.Forward(points, cut_);
-  for (DomainPoint& p : *points) p = OnBaseFace(p);
+  for (DomainPoint& p : *points) p = slides_.Forward(OnBaseFace(p));
 }
 
-DomainPoint BaseDomain::ToInput(const DomainPoint& on_base) const {
+DomainPoint BaseDomain::ToInput(const DomainPoint& point) const {
+  const DomainPoint on_base = slides_.Backward(point);
   DomainPoint p{history_face_[on_base.face], {}};
   for (int k = 0; k < 3; ++k) p.barycentric[(k + rotation_[on_base.face]) % 3] = on_base.barycentric[k];
   return history_.Backward(p);

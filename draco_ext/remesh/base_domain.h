@@ -9,6 +9,7 @@
 #include "common/subdivision.h"
 #include "lacerta/mesh.h"
 #include "remesh/collapse_history.h"
+#include "remesh/domain_slides.h"
 
 namespace lacerta {
 
@@ -23,7 +24,7 @@ class BaseDomain {
 
   uint32_t num_vertices() const { return static_cast<uint32_t>(input_vertex_.size()); }
   const std::vector<Triangle>& triangles() const { return triangles_; }
-  // Input vertex at which a base vertex stands; kNone for those that Reorder has put in.
+  // Input vertex at which a base vertex stands, or stood before it slid; kNone for those that Reorder has put in.
   uint32_t input_vertex(uint32_t v) const { return input_vertex_[v]; }
   // The collapse that made a base face, or kNone where it is one of the input's.
   uint32_t created_by(uint32_t f) const { return history_.created_by(history_face_[f]); }
@@ -42,10 +43,15 @@ class BaseDomain {
   // known before anything is refined. After Reorder, which forgets it. joined: #V0.
   void Join(std::vector<uint32_t> joined);
 
+  // Vertices slide to points of the input (face kNone: those that stay), as far as the domain lets them (DomainSlides). After Reorder, which forgets it, like Join. to: #V0.
+  void Slide(const std::vector<DomainPoint>& to, const std::vector<Vec3f>& positions);
+  // The point of the input at which a base vertex stands, if it has slid there; else face kNone.
+  const DomainPoint& slid_to(uint32_t v) const { return slid_to_[v]; }
+
   // Point of the domain (face: base face) of a point on a face of the input, and back.
   DomainPoint FromInput(const DomainPoint& on_input) const;
   void FromInput(std::vector<DomainPoint>* points) const;  // each of them, which takes less time than one after the other
-  DomainPoint ToInput(const DomainPoint& on_base) const;
+  DomainPoint ToInput(const DomainPoint& point) const;
 
   // The chart coordinates of a domain point around base face `center`; none where it lies beyond the neighboring faces.
   std::optional<ChartPoint> ToChart(uint32_t center, const DomainPoint& point) const;
@@ -66,6 +72,8 @@ class BaseDomain {
   std::vector<uint32_t> base_face_;          // by history face, or kNone
   BaseTags tags_;
   Topology topology_;
+  DomainSlides slides_{Topology()};
+  std::vector<DomainPoint> slid_to_;         // #V0
 };
 
 }  // namespace lacerta

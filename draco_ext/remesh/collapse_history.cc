@@ -4,29 +4,6 @@
 #include <limits>
 
 namespace lacerta {
-namespace {
-
-double CrossProduct(const Vec2d& a, const Vec2d& b) { return a.x * b.y - a.y * b.x; }
-Vec2d Minus(const Vec2d& a, const Vec2d& b) { return {a.x - b.x, a.y - b.y}; }
-
-// Barycentric weights of q in the triangle (a, b, c); weights below zero say that q lies outside.
-Vec3d BarycentricIn(const Vec2d& q, const Vec2d& a, const Vec2d& b, const Vec2d& c) {
-  const double area = CrossProduct(Minus(b, a), Minus(c, a));
-  if (!(area > 0)) return {-std::numeric_limits<double>::max(), 0, 0};
-  const double wb = CrossProduct(Minus(q, a), Minus(c, a)) / area;
-  const double wc = CrossProduct(Minus(b, a), Minus(q, a)) / area;
-  return {1 - wb - wc, wb, wc};
-}
-
-double MinWeight(const Vec3d& w) { return std::min({w.x, w.y, w.z}); }
-
-}  // namespace
-
-Vec3d ClampWeights(const Vec3d& weights) {
-  const Vec3d w = {std::max(weights.x, 0.0), std::max(weights.y, 0.0), std::max(weights.z, 0.0)};
-  const double sum = w.x + w.y + w.z;
-  return sum > 0 ? w * (1 / sum) : Vec3d{1, 0, 0};
-}
 
 CollapseHistory::CollapseHistory(const Topology& topology)
     : roles_(topology.role),

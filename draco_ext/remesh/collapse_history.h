@@ -16,6 +16,7 @@
 
 #include "common/subdivision.h"
 #include "lacerta/mesh.h"
+#include "remesh/fan_chart.h"
 
 namespace lacerta {
 
@@ -23,14 +24,6 @@ namespace lacerta {
 struct DomainPoint {
   uint32_t face = kNone;
   Vec3d barycentric;
-};
-
-// The nearest weights without one below zero, with sum one: rounding may put a point a hair outside of every triangle.
-Vec3d ClampWeights(const Vec3d& weights);
-
-// A point of a chart.
-struct Vec2d {
-  double x = 0, y = 0;
 };
 
 // The collapses that lead to one of the meshes of a history: the first `time` ones, but for those that are held back.

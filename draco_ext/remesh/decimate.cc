@@ -7,28 +7,15 @@
 #include <queue>
 
 #include "geometry/bounding_box.h"
+#include "remesh/fan_chart.h"
 #include "remesh/quadric.h"
 
 namespace lacerta {
 namespace {
 
 constexpr double kNotSound = std::numeric_limits<double>::infinity();
-constexpr double kPi = 3.14159265358979323846;
 // Vertices of more faces are not removed before their neighbors are: the work per vertex is quadratic in its valence.
 constexpr size_t kMaxRing = 64;
-// Twice the area of an old face in its chart, whose radius is 1: below, points would not come back where they were.
-constexpr double kLeastChartArea = 1e-9;
-
-// The fan of faces around one vertex. ring[i] are its neighbors counterclockwise; faces[i] = (v, ring[i], ring[i+1]), one less
-// than neighbors where the vertex is on the border.
-struct Fan {
-  std::vector<uint32_t> ring;
-  std::vector<uint32_t> faces;
-  int curve[2] = {-1, -1};  // of a vertex on a curve: the neighbors on it, as indices into the ring
-
-  int size() const { return static_cast<int>(ring.size()); }
-  bool is_open() const { return faces.size() < ring.size(); }
-};
 
 // The best collapse of one vertex into a neighbor.
 struct Candidate {
@@ -165,53 +152,6 @@ Fan Decimator::FanOf(uint32_t v) const {
   return fan;
 }
 
-// The ring flattened around v at the origin by the conformal map z^a of [Duchamp et al. 1997]: angles scaled to 2 pi. At a
-// vertex on a curve the angles on either side of the curve are scaled to pi, so that the curve runs straight through it.
-std::vector<Vec2d> FlattenFan(const Vec3d& center, const Fan& fan, const std::vector<Vec3d>& positions) {
-  const int k = fan.size(), num_faces = static_cast<int>(fan.faces.size());
-  std::vector<double> angle(k, 0.0), radius(k);
-  double total = 0, scale = 0;
-  for (int i = 0; i < k; ++i) {
-    radius[i] = Norm(positions[fan.ring[i]] - center);
-    scale = std::max(scale, radius[i]);
-  }
-  for (int i = 0; i < num_faces; ++i) {
-    const Vec3d a = positions[fan.ring[i]] - center, b = positions[fan.ring[(i + 1) % k]] - center;  // NOLINT(clang-analyzer-core.DivideZero): fans have neighbors
-    angle[i] = std::max(std::atan2(Norm(Cross(a, b)), Dot(a, b)), 1e-4);
-    total += angle[i];
-  }
-  const double exponent = (fan.is_open() ? kPi : 2 * kPi) / total;
-  if (fan.curve[0] >= 0 && !fan.is_open()) {  // each side of the crease for itself
-    double side = 0;
-    for (int i = fan.curve[0]; i < fan.curve[1]; ++i) side += angle[i];
-    for (int i = 0; i < k; ++i) {
-      const bool between = i >= fan.curve[0] && i < fan.curve[1];
-      angle[i] *= kPi / ((between ? side : total - side) * exponent);
-    }
-  }
-  std::vector<Vec2d> chart(k);
-  double theta = 0;
-  for (int i = 0; i < k; ++i) {
-    const double r = std::pow(std::max(radius[i] / scale, 1e-6), exponent);
-    chart[i] = {r * std::cos(theta), r * std::sin(theta)};
-    theta += angle[i] * exponent;
-  }
-  return chart;
-}
-
-double Orientation(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-// Whether every face of the fan has area in the chart. An angle is at most the sum of the others, so flattening opens it to 180
-// degrees at most, which it does at a vertex in the plane of its ring but outside of it.
-bool IsStarShaped(const std::vector<Vec2d>& chart, size_t num_faces) {
-  for (size_t i = 0; i < num_faces; ++i) {
-    if (!(Orientation(Vec2d{}, chart[i], chart[(i + 1) % chart.size()]) > kLeastChartArea)) return false;
-  }
-  return true;
-}
-
 bool Decimator::CanLoseAFace(uint32_t v) const { return vertex_faces_[v].size() > (on_border_[v] ? 1 : 3); }
 
 bool Decimator::KeepsTopology(const Fan& fan, int kept) const {
@@ -250,7 +190,7 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
   double new_area = 0;
   for (int i = kept + 1; i < kept + k - 1; ++i) {
     const int a = i % k, b = (i + 1) % k;
-    if (Orientation(chart[kept], chart[a], chart[b]) < 1e-5) return kNotSound;
+    if (DoubledArea(chart[kept], chart[a], chart[b]) < 1e-5) return kNotSound;
     const Vec3d &pu = positions_[u], &pa = positions_[fan.ring[a]], &pb = positions_[fan.ring[b]];
     const Vec3d normal = Cross(pa - pu, pb - pu);
     const double area2 = Norm(normal);

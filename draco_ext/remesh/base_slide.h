@@ -1,0 +1,25 @@
+// Base vertices slide along the input to where the levels over them have the least left to code.
+#ifndef LACERTA_REMESH_BASE_SLIDE_H_
+#define LACERTA_REMESH_BASE_SLIDE_H_
+
+#include <vector>
+
+#include "lacerta/mesh.h"
+#include "remesh/base_domain.h"
+#include "remesh/input_surface.h"
+
+namespace lacerta {
+
+// Points of the input at which the vertices of a base mesh should be, #V: face kNone for those that stay, as all do on curves and without triangles, and those that
+// have slid already. domain: of `surface`; positions: #V, on the input. None goes farther than half the mean length of its edges.
+//
+// What becomes smaller is the sum of log2(1 + (d / r)^2) / 2 over the distances d of midpoints from the input: level by level, predicted by the butterfly from the points
+// of the input closest to the midpoints before, as piercing would about find them. Those of a level count twice as much as those of the one before, for what finer levels
+// take goes with them. To it comes what the base itself takes, as much for what each corner is off the parallelogram of the triangle across. r, half the mean distance on the
+// first level, is far above a quantization step: squares count, so that what is worst is mended first. By Gauss-Newton steps, each by conjugate gradients. On all
+// cores; the same on any number of them.
+std::vector<DomainPoint> SlideBase(const InputSurface& surface, const BaseDomain& domain, const std::vector<Vec3f>& positions);
+
+}  // namespace lacerta
+
+#endif  // LACERTA_REMESH_BASE_SLIDE_H_
