@@ -116,6 +116,7 @@ class BaseSlide {
   double SlopeOfBits(double square) const { return 1.0 / (squared_resolution_ + square); }  // over the square; but for a factor
   Vec3d NormalAt(const SurfacePoint& p) const { return Vec3Cast<double>(surface_.NormalAt(p.face, OnInput(p).barycentric)); }
   double MeanDistanceOfFirstLevel() const;
+  double MeanEdgeLength() const;
   void FindMidpoints(State* s) const;
   void FindMidpoint(uint32_t point, State* s) const;
   double Cost(const State& s) const;
@@ -130,12 +131,13 @@ class BaseSlide {
   std::vector<double> edge_lengths_;  // mean at each base vertex
   std::vector<char> is_movable_;      // of base vertices
   State start_, state_;
-  double squared_resolution_ = 1.0;
+  double squared_resolution_ = 0.0;  // 0: there is nothing to code
 };
 
 BaseSlide::BaseSlide(const InputSurface& surface, const BaseDomain& domain, const std::vector<Vec3f>& positions)
     : surface_(surface), points_(domain.topology()), flaps_(FlapsOf(domain.topology())), edge_lengths_(points_.num_base(), 0.0) {
   constexpr double kResolution = 0.5;  // over the mean distance on the first level
+  constexpr double kFlat = 1e-5;       // of that distance, over edges: what rounding makes
   const Topology& base = domain.topology();
   for (const auto& [a, b] : base.edges) {
     for (const uint32_t v : {a, b}) edge_lengths_[v] += Norm(positions[a] - positions[b]) / base.valence[v];
@@ -154,8 +156,8 @@ BaseSlide::BaseSlide(const InputSurface& surface, const BaseDomain& domain, cons
     is_movable_.push_back(base.valence[v] > 0 && base.role[v] == CurveRole::kSmooth && !has_slid && SquaredNorm(s.normals[v]) > 0.0);
   }
   FindMidpoints(&s);
-  const double resolution = kResolution * MeanDistanceOfFirstLevel();
-  if (resolution > 0.0) squared_resolution_ = resolution * resolution;
+  const double distance = MeanDistanceOfFirstLevel();
+  if (distance > kFlat * MeanEdgeLength()) squared_resolution_ = kResolution * kResolution * distance * distance;
   s.cost = Cost(s);
   start_ = s;
 }
@@ -166,7 +168,7 @@ std::vector<DomainPoint> BaseSlide::Run() {
   constexpr double kLeastFactor = 0.3;
   constexpr double kWorthwhile = 0.003;    // of the cost
   double factor = kFirstFactor;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostSteps && squared_resolution_ > 0.0; ++step) {
     const double before = state_.cost;
     const std::vector<Vec3d> moves = Moves();
     State next = Moved(moves, factor);
@@ -178,9 +180,19 @@ std::vector<DomainPoint> BaseSlide::Run() {
 }
 
 double BaseSlide::MeanDistanceOfFirstLevel() const {
+  double sum = 0.0, count = 0.0;
+  for (uint32_t point = points_.level_ends[0]; point < points_.level_ends[1]; ++point) {
+    if (!(points_.midpoint(point).weight > 0.0)) continue;
+    sum += std::fabs(state_.distances[point]);
+    count += 1.0;
+  }
+  return sum / std::max(1.0, count);
+}
+
+double BaseSlide::MeanEdgeLength() const {
   double sum = 0.0;
-  for (uint32_t point = points_.level_ends[0]; point < points_.level_ends[1]; ++point) sum += std::fabs(state_.distances[point]);
-  return sum / std::max(1.0, static_cast<double>(points_.level_ends[1] - points_.level_ends[0]));
+  for (const double length : edge_lengths_) sum += length;
+  return sum / std::max(1.0, static_cast<double>(edge_lengths_.size()));
 }
 
 void BaseSlide::FindMidpoints(State* s) const {
