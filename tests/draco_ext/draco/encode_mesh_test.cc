@@ -119,7 +119,7 @@ TEST(EncodeMeshTest, CustomFormHoldsACompactBase) {
 TEST(EncodeMeshTest, BestEffortIsNeverLargerAndSometimesSmaller) {
   size_t smaller = 0;
   for (const TriangleMesh& mesh : {Scan(), Ring()}) {
-    for (const double psnr : {46.0, 50.0, 54.0}) {
+    for (const double psnr : {48.0, 52.0, 56.0}) {
       EncodeOptions options = OptionsFor(Kind::kPsnr, psnr);
       const size_t normal = EncodeOrDie(mesh, options).stream.size();
       options.effort = Effort::kBest;

@@ -207,7 +207,7 @@ struct NotingRival {
 
 TEST(CodeAtTargetTest, GivesUpWhereItIsOutdone) {
   const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
-  const ResolvedTarget psnr{false, 0, 54};
+  const ResolvedTarget psnr{false, 0, 56};
   NotingRival large{1e9};
   const auto size = static_cast<double>(large.Code(coder, psnr).value().measured.stream.size());
   ASSERT_GE(large.asked.size(), 2u);
@@ -222,7 +222,7 @@ TEST(CodeAtTargetTest, GivesUpWhereItIsOutdone) {
 
 TEST(CodeAtTargetTest, TheWalkOverBasesEndsWhereTheBestCanHardlyGetAsSmallAsTheRival) {
   const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
-  const ResolvedTarget psnr{false, 0, 54};
+  const ResolvedTarget psnr{false, 0, 56};
   NotingRival large{1e9};
   const auto size = static_cast<double>(large.Code(coder, psnr, Effort::kNormal).value().measured.stream.size());
   ASSERT_GE(large.asked.size(), 3u);
