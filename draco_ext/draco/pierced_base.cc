@@ -32,11 +32,7 @@ StatusOr<std::unique_ptr<PiercedBase>> PiercedBase::Make(const RefinableSurface&
   domain.Reorder(base.vertex_map, split);
   std::vector<Vec3f> positions;
   for (const uint32_t v : base.vertex_map) positions.push_back(nominal.positions[v]);
-  domain.Slide(SlideBase(input.surface, domain, positions), positions);
-  for (uint32_t v = 0; v < positions.size(); ++v) {
-    const DomainPoint& place = domain.slid_to(v);
-    if (place.face != kNone) positions[v] = input.surface.PositionAt(place.face, place.barycentric);
-  }
+  SlideBase(input.surface, &domain, &positions);
   domain.Join(JoinedVertices(positions));
   return std::unique_ptr<PiercedBase>(
       new PiercedBase(input, std::move(base), std::move(domain), positions, std::move(still), std::move(held)));

@@ -8,6 +8,7 @@
 #include "remesh/attribute_fit.h"
 #include "remesh/base_attributes.h"
 #include "remesh/base_parts.h"
+#include "remesh/base_slide.h"
 #include "remesh/decimate.h"
 #include "remesh/level_attributes.h"
 #include "remesh/level_wedges.h"
@@ -67,6 +68,7 @@ StatusOr<AttributedNormalMesh> RemeshAttributed(const AttributedParts& parts, co
     still_vertex.push_back(v >= num_refined ? v - num_refined : kNone);
   }
   domain.Reorder(order.vertex_map, split);
+  SlideBase(surface, &domain, &positions);
   domain.Join(JoinedVertices(positions));
 
   AttributedNormalMesh result;

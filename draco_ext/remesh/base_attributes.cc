@@ -93,6 +93,16 @@ void AppendRow(const MeshAttribute& attribute, uint32_t row, std::vector<float>*
   values->insert(values->end(), first, first + attribute.components);
 }
 
+// At a point of a face with values.
+void AppendValueAt(const MeshAttribute& attribute, const DomainPoint& point, std::vector<float>* values) {
+  const Triangle& rows = attribute.corners[point.face];
+  for (size_t c = 0; c < attribute.components; ++c) {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) sum += point.barycentric[k] * static_cast<double>(attribute.values[size_t{rows[k]} * attribute.components + c]);
+    values->push_back(static_cast<float>(sum));
+  }
+}
+
 // Appends the attribute of the still triangles: `still_face`, #F0, their numbers in the still part, or kNone.
 void AddStill(const MeshAttribute& attribute, const std::vector<uint32_t>& still_face, const std::vector<Triangle>& base_triangles,
               const std::vector<Triangle>& still_triangles, const std::vector<uint32_t>& still_vertex, LevelAttribute* level) {
@@ -169,10 +179,15 @@ BaseAttributes SampleBase(const AttributedParts& parts, const BaseDomain& domain
     level.num_base_values = static_cast<uint32_t>(first_corner.size());
     for (const uint32_t c : first_corner) {
       const int k = static_cast<int>(c % 3);
+      const uint32_t vertex = topology.triangles[c / 3][static_cast<size_t>(k)];
+      if (const DomainPoint& place = domain.slid_to(vertex); place.face != kNone && attribute.corners[place.face][0] != kNoValue) {
+        AppendValueAt(attribute, place, &level.values);
+        continue;
+      }
       const uint32_t face = sampler.InputFaceAt(c / 3, k);
       const Triangle& rows = attribute.corners[face][0] != kNoValue ? attribute.corners[face]
                                                                     : attribute.corners[domain.ToInput({c / 3, kMiddle}).face];
-      const uint32_t v = domain.input_vertex(topology.triangles[c / 3][static_cast<size_t>(k)]);
+      const uint32_t v = domain.input_vertex(vertex);
       AppendRow(attribute, rows[static_cast<size_t>(CornerOf(parts.refined.surface.triangles[face], v))], &level.values);
     }
     for (const uint32_t f : split_number) level.base_corners.push_back(f == kNone ? Triangle{kNoValue, kNoValue, kNoValue} : corners[f]);

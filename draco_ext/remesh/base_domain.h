@@ -43,9 +43,10 @@ class BaseDomain {
   // known before anything is refined. After Reorder, which forgets it. joined: #V0.
   void Join(std::vector<uint32_t> joined);
 
-  // Vertices slide to points of the input (face kNone: those that stay), as far as the domain lets them (DomainSlides). After Reorder, which forgets it, like Join. to: #V0.
+  // Vertices slide to points of the input (face kNone: those that stay), where the domain lets them (DomainSlides). After Reorder, which forgets it. to: #V0; positions: #V0,
+  // where they stand.
   void Slide(const std::vector<DomainPoint>& to, const std::vector<Vec3f>& positions);
-  // The point of the input at which a base vertex stands, if it has slid there; else face kNone.
+  // The point of the input at which a base vertex stands if it has slid there, else face kNone.
   const DomainPoint& slid_to(uint32_t v) const { return slid_to_[v]; }
 
   // Point of the domain (face: base face) of a point on a face of the input, and back.

@@ -152,8 +152,7 @@ BaseSlide::BaseSlide(const InputSurface& surface, const BaseDomain& domain, cons
     s.at[v] = Vec3Cast<double>(positions[v]);
     const uint32_t on_input = domain.input_vertex(v);
     if (on_input != kNone) s.normals[v] = Vec3Cast<double>(surface.vertex_normal(on_input));
-    const bool has_slid = domain.slid_to(v).face != kNone;
-    is_movable_.push_back(base.valence[v] > 0 && base.role[v] == CurveRole::kSmooth && !has_slid && SquaredNorm(s.normals[v]) > 0.0);
+    is_movable_.push_back(base.valence[v] > 0 && base.role[v] == CurveRole::kSmooth && SquaredNorm(s.normals[v]) > 0.0);
   }
   FindMidpoints(&s);
   const double distance = MeanDistanceOfFirstLevel();
@@ -316,8 +315,12 @@ BaseSlide::State BaseSlide::Moved(const std::vector<Vec3d>& moves, double factor
 
 }  // namespace
 
-std::vector<DomainPoint> SlideBase(const InputSurface& surface, const BaseDomain& domain, const std::vector<Vec3f>& positions) {
-  return BaseSlide(surface, domain, positions).Run();
+void SlideBase(const InputSurface& surface, BaseDomain* domain, std::vector<Vec3f>* positions) {
+  domain->Slide(BaseSlide(surface, *domain, *positions).Run(), *positions);
+  for (uint32_t v = 0; v < positions->size(); ++v) {
+    const DomainPoint& place = domain->slid_to(v);
+    if (place.face != kNone) (*positions)[v] = surface.PositionAt(place.face, place.barycentric);
+  }
 }
 
 }  // namespace lacerta

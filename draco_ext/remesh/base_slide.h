@@ -10,15 +10,15 @@
 
 namespace lacerta {
 
-// Points of the input at which the vertices of a base mesh should be, #V: face kNone for those that stay, as all do on curves and without triangles, and those that
-// have slid already. domain: of `surface`; positions: #V, on the input. None goes farther than half the mean length of its edges.
+// Moves vertices of a base mesh to other points of the input, and the domain and `positions` (#V, on the input) with them, but for those on curves and without triangles.
+// domain: of `surface`; none of its vertices has slid yet. None goes farther than half the mean length of its edges, nor around a tip.
 //
 // What becomes smaller is the sum of log2(1 + (d / r)^2) / 2 over the distances d of midpoints from the input: level by level, predicted by the butterfly from the points
-// of the input closest to the midpoints before, as piercing would about find them. Those of a level count twice as much as those of the one before, for what finer levels
-// take goes with them. To it comes what the base itself takes, as much for what each corner is off the parallelogram of the triangle across. r, half the mean distance on the
-// first level, is far above a quantization step: squares count, so that what is worst is mended first. By Gauss-Newton steps, each by conjugate gradients. On all
+// of the input closest to the midpoints before, about as piercing would find them. Those of a level count twice as much as those of the one before, for what finer levels
+// take goes with them. To it comes what the base itself takes, as much for what each corner is off the parallelogram of the triangle across. r, half the mean distance on
+// the first level, is far above a quantization step: squares count, so that what is worst is mended first. By Gauss-Newton steps, each by conjugate gradients. On all
 // cores; the same on any number of them.
-std::vector<DomainPoint> SlideBase(const InputSurface& surface, const BaseDomain& domain, const std::vector<Vec3f>& positions);
+void SlideBase(const InputSurface& surface, BaseDomain* domain, std::vector<Vec3f>* positions);
 
 }  // namespace lacerta
 

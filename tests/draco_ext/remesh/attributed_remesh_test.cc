@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/triangle_tree.h"
 #include "lacerta/surface_distance.h"
 #include "remesh/level_wedges.h"
 #include "remesh/simplify_to_errors.h"
@@ -112,6 +113,41 @@ TEST(AttributedRemeshTest, TheFinestLevelIsNearTheInputInAllAttributes) {
       EXPECT_LT(errors.attributes[1].rms_99, shape.most_degrees);
       EXPECT_EQ(errors.turned, 0);
     }
+  }
+}
+
+// They slide over the input, and are not where its vertices are.
+TEST(AttributedRemeshTest, BaseVerticesHaveTheValuesOfTheInputWhereTheyStand) {
+  for (const Shape& shape : Shapes()) {
+    SCOPED_TRACE(shape.name);
+    const AttributedSemiRegularMesh remesh = Remeshed(shape.mesh, shape.num_levels, shape.num_base_vertices);
+    const TriangleTree tree(shape.mesh.surface);
+    const float near = static_cast<float>(6e-3 * BoundingBoxDiagonal(shape.mesh.surface));  // the fit moves them off the input
+    size_t between = 0;  // vertices of the input
+    for (size_t f = 0; f < remesh.surface.base_triangles.size(); ++f) {
+      for (size_t k = 0; k < 3; ++k) {
+        const MeshAttribute& input = shape.mesh.attributes[0];
+        const LevelAttribute& base = remesh.attributes[0];
+        const float* value = &base.values[size_t{base.base_corners[f][k]} * base.components];
+        std::vector<ClosestPointResult> places;
+        tree.PointsNear(remesh.surface.positions[remesh.surface.base_triangles[f][k]], near * near, 64, &places);
+        ASSERT_FALSE(places.empty());
+        double least = 1;
+        for (const ClosestPointResult& place : places) {
+          double square = 0;
+          for (uint32_t c = 0; c < input.components; ++c) {
+            double expected = 0;
+            for (size_t j = 0; j < 3; ++j) expected += static_cast<double>(place.point.barycentric[j] * input.values[size_t{input.corners[place.point.face][j]} * input.components + c]);
+            square += (value[c] - expected) * (value[c] - expected);
+          }
+          least = std::min(least, std::sqrt(square));
+        }
+        EXPECT_LT(least, 0.002);
+        const auto& weights = places[0].point.barycentric;
+        between += *std::max_element(weights.begin(), weights.end()) < 0.99f;
+      }
+    }
+    EXPECT_GE(between, shape.name == "torus" ? 20u : 0u);
   }
 }
 
