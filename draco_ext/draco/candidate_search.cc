@@ -250,10 +250,15 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::Settle(const std::optional<C
 StatusOr<MeasuredStream> CandidateSearch::Meet() {
   steps_.last_detailed = candidate_.LastDetailed(std::exp(start_.log_lambda));
   if (effort_.suit_passes > 0 && mode_ != EncodeMode::kPaper) SuitSteps();
-  values_.clear();  // those of fewer passes
-  LACERTA_ASSIGN_OR_RETURN(Attempt drawn, Draw());
-  values_ = {{drawn.log_lambda, drawn.value}};
-  return target_.is_rate ? MeetRate(std::move(drawn)) : MeetQuality(std::move(drawn));
+  for (;; ++steps_.last_detailed) {
+    values_.clear();  // those of fewer passes, or of other levels
+    values_are_measured_ = false;
+    LACERTA_ASSIGN_OR_RETURN(Attempt drawn, Draw());
+    values_ = {{drawn.log_lambda, drawn.value}};
+    LACERTA_ASSIGN_OR_RETURN(MeasuredStream met, target_.is_rate ? MeetRate(std::move(drawn)) : MeetQuality(std::move(drawn)));
+    // What is dropped with the finest level may be what is missing.
+    if (met.meets_target || target_.is_rate || steps_.last_detailed >= candidate_.num_levels()) return met;
+  }
 }
 
 StatusOr<MeasuredStream> CandidateSearch::MeetRate(Attempt drawn) {
