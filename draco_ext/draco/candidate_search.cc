@@ -255,9 +255,10 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
     values_are_measured_ = false;
     LACERTA_ASSIGN_OR_RETURN(Attempt drawn, Draw());
     values_ = {{drawn.log_lambda, drawn.value}};
-    LACERTA_ASSIGN_OR_RETURN(MeasuredStream met, target_.is_rate ? MeetRate(std::move(drawn)) : MeetQuality(std::move(drawn)));
+    if (target_.is_rate) return MeetRate(std::move(drawn));
+    LACERTA_ASSIGN_OR_RETURN(MeasuredStream met, MeetQuality(std::move(drawn)));
     // What is dropped with the finest level may be what is missing.
-    if (met.meets_target || target_.is_rate || steps_.last_detailed >= candidate_.num_levels()) return met;
+    if (met.meets_target || steps_.last_detailed >= candidate_.num_levels()) return met;
   }
 }
 

@@ -93,6 +93,7 @@ void BaseDomain::Join(std::vector<uint32_t> joined) {
 
 void BaseDomain::Slide(const std::vector<DomainPoint>& to, const std::vector<Vec3f>& positions) {
   std::vector<Vec3d> before;
+  before.reserve(positions.size());
   for (const Vec3f& p : positions) before.push_back(Vec3Cast<double>(p));
   for (uint32_t v = 0; v < num_vertices(); ++v) {
     if (to[v].face != kNone && slides_.Move(v, OnBaseFace(history_.Forward(to[v], cut_)), topology_, before)) slid_to_[v] = to[v];

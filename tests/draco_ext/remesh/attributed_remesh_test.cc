@@ -48,7 +48,7 @@ std::vector<Shape> Shapes() {
   return result;
 }
 
-StatusOr<AttributedNormalMesh> Remesh(const AttributedMesh& mesh, AttributedRemeshOptions options) {
+StatusOr<AttributedNormalMesh> Remesh(const AttributedMesh& mesh, const AttributedRemeshOptions& options) {
   LACERTA_ASSIGN_OR_RETURN(const AttributedParts parts, SplitAttributedSurface(mesh));
   LACERTA_ASSIGN_OR_RETURN(const CollapseHistory history, DecimateAttributed(parts));
   const InputSurface surface(parts.refined.surface, parts.topology);
