@@ -14,6 +14,8 @@
 namespace lacerta {
 namespace {
 
+constexpr uint32_t kMostPoints = 40'000;  // of all levels that are looked at
+
 // Base vertices and the midpoints of some levels, numbered as in the finest of these, and what is predicted from what.
 struct MidpointsOver {
   struct Midpoint {
@@ -52,7 +54,6 @@ struct MidpointsOver {
 };
 
 MidpointsOver::MidpointsOver(const Topology& base) : level_ends{base.num_vertices} {
-  constexpr uint32_t kMostPoints = 40'000;  // but the first level is always there
   constexpr double kLevelWeight = 2.0;      // of a level, over that of the one before
   double weight = 1.0;
   for (Topology level = base;; level = Refine(level)) {
@@ -207,8 +208,8 @@ void BaseSlide::FindMidpoint(uint32_t point, State* s) const {
   const SurfacePoint closest = surface_.tree().ClosestPointNear(Vec3Cast<float>(predicted), hint).point;
   const Vec3d expected = s->normals[a] + s->normals[b];
   s->faces[point] = closest.face;
-  s->normals[point] = NormalAt(closest);
-  if (Dot(s->normals[point], expected) > kLeastCosine * Norm(expected)) {
+  if (closest.face != kNone) s->normals[point] = NormalAt(closest);
+  if (closest.face != kNone && Dot(s->normals[point], expected) > kLeastCosine * Norm(expected)) {
     s->at[point] = Vec3Cast<double>(closest.position);
     const Vec3d away = predicted - s->at[point];
     s->distances[point] = std::copysign(Norm(away), Dot(away, s->normals[point]));
@@ -301,6 +302,7 @@ BaseSlide::State BaseSlide::Moved(const std::vector<Vec3d>& moves, double factor
     const Vec3d to = s.at[v] + Limited(moves[v] * factor, kFarthestStep * edge_lengths_[v]);
     const Vec3d target = start_.at[v] + Limited(to - start_.at[v], kFarthest * edge_lengths_[v]);
     const SurfacePoint closest = surface_.tree().ClosestPointNear(Vec3Cast<float>(target), s.faces[v]).point;
+    if (closest.face == kNone) continue;
     const Vec3d normal = NormalAt(closest);
     if (Dot(normal, start_.normals[v]) < kLeastCosine) continue;
     s.slid_to[v] = OnInput(closest);
@@ -316,6 +318,7 @@ BaseSlide::State BaseSlide::Moved(const std::vector<Vec3d>& moves, double factor
 }  // namespace
 
 void SlideBase(const InputSurface& surface, BaseDomain* domain, std::vector<Vec3f>* positions) {
+  if (domain->topology().num_vertices + domain->topology().num_edges() > kMostPoints) return;
   domain->Slide(BaseSlide(surface, *domain, *positions).Run(), *positions);
   for (uint32_t v = 0; v < positions->size(); ++v) {
     const DomainPoint& place = domain->slid_to(v);

@@ -11,7 +11,8 @@
 namespace lacerta {
 
 // Moves vertices of a base mesh to other points of the input, and the domain and `positions` (#V, on the input) with them, but for those on curves and without triangles.
-// domain: of `surface`; none of its vertices has slid yet. None goes farther than half the mean length of its edges, nor around a tip.
+// domain: of `surface`; none of its vertices has slid yet. None goes farther than half the mean length of its edges, nor around a tip. Bases of more than ten thousand
+// vertices stay as they are, which bounds time and memory.
 //
 // What becomes smaller is the sum of log2(1 + (d / r)^2) / 2 over the distances d of midpoints from the input: level by level, predicted by the butterfly from the points
 // of the input closest to the midpoints before, about as piercing would find them. Those of a level count twice as much as those of the one before, for what finer levels

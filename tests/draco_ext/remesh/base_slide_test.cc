@@ -116,6 +116,10 @@ TEST(SlideBase, WhatIsFlatStays) {
   EXPECT_EQ(Slid(shapes::GridWithBorder(20, 20), 30, true).NumMoved(), 0u);
 }
 
+TEST(SlideBase, LargeBasesStay) {
+  EXPECT_EQ(Slid(shapes::BumpySphere(6), 12'000, true).NumMoved(), 0u);
+}
+
 TEST(SlideBase, IsTheSameOnOneThreadAndAtAnotherScale) {
   const TriangleMesh input = shapes::BumpySphere(4);
   const Slid slid(input, 40, true), larger(lacerta::testing::Scaled(input, 1024), 40, true);
