@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/subdivision.h"
+#include "geometry/triangle_tree.h"
 #include "lacerta/mesh.h"
 #include "remesh/collapse_history.h"
 #include "remesh/domain_slides.h"
@@ -16,6 +17,9 @@ namespace lacerta {
 // A point of the domain in the chart of one base face: barycentric coordinates that go on affinely over the three faces
 // across its edges, as if all four were equilateral and unfolded into the plane.
 using ChartPoint = Vec3d;
+
+// A point of the input that the tree over it has found.
+inline DomainPoint InputPoint(const SurfacePoint& point) { return {point.face, {point.barycentric[0], point.barycentric[1], point.barycentric[2]}}; }
 
 class BaseDomain {
  public:

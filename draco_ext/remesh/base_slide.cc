@@ -10,6 +10,7 @@
 #include "common/butterfly.h"
 #include "common/subdivision.h"
 #include "geometry/triangle_tree.h"
+#include "remesh/conjugate_gradients.h"
 
 namespace lacerta {
 namespace {
@@ -86,14 +87,6 @@ Vec3d OffParallelogram(const Flap& flap, const std::vector<Vec3d>& at) { return 
 Vec3d Along(const Vec3d& move, const Vec3d& normal) { return move - normal * Dot(move, normal); }
 Vec3d Limited(const Vec3d& move, double most) { return Norm(move) > most ? move * (most / Norm(move)) : move; }
 
-double DotOfAll(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
-  double sum = 0.0;
-  for (size_t v = 0; v < a.size(); ++v) sum += Dot(a[v], b[v]);
-  return sum;
-}
-
-DomainPoint OnInput(const SurfacePoint& p) { return {p.face, {p.barycentric[0], p.barycentric[1], p.barycentric[2]}}; }
-
 class BaseSlide {
  public:
   BaseSlide(const InputSurface& surface, const BaseDomain& domain, const std::vector<Vec3f>& positions);
@@ -115,7 +108,7 @@ class BaseSlide {
 
   double Bits(double square) const { return 0.5 * std::log2(1.0 + square / squared_resolution_); }
   double SlopeOfBits(double square) const { return 1.0 / (squared_resolution_ + square); }  // over the square; but for a factor
-  Vec3d NormalAt(const SurfacePoint& p) const { return Vec3Cast<double>(surface_.NormalAt(p.face, OnInput(p).barycentric)); }
+  Vec3d NormalAt(const SurfacePoint& p) const { return Vec3Cast<double>(surface_.NormalAt(p.face, InputPoint(p).barycentric)); }
   double MeanDistanceOfFirstLevel() const;
   double MeanEdgeLength() const;
   void FindMidpoints(State* s) const;
@@ -242,23 +235,9 @@ std::vector<Vec3d> BaseSlide::Moves() const {
     off_parallelograms.push_back(OffParallelogram(flap, state_.at));
     weights.flaps.push_back(SlopeOfBits(SquaredNorm(off_parallelograms.back()) / 3.0) / 3.0);
   }
-  std::vector<Vec3d> moves(points_.num_base()), rest = Gradient(state_.distances, off_parallelograms, weights);
-  for (Vec3d& r : rest) r = r * -1.0;
-  std::vector<Vec3d> direction = rest;
-  double square = DotOfAll(rest, rest);
-  for (int round = 0; round < kRounds && square > 0.0; ++round) {
-    const std::vector<Vec3d> applied = Applied(direction, weights);
-    const double curvature = DotOfAll(direction, applied);
-    if (!(curvature > 0.0)) break;
-    const double step = square / curvature, before = square;
-    for (size_t v = 0; v < moves.size(); ++v) {
-      moves[v] += direction[v] * step;
-      rest[v] = rest[v] - applied[v] * step;
-    }
-    square = DotOfAll(rest, rest);
-    for (size_t v = 0; v < moves.size(); ++v) direction[v] = rest[v] + direction[v] * (square / before);
-  }
-  return moves;
+  std::vector<Vec3d> downhill = Gradient(state_.distances, off_parallelograms, weights);
+  for (Vec3d& pull : downhill) pull = pull * -1.0;
+  return ConjugateGradients(std::move(downhill), kRounds, [&](const std::vector<Vec3d>& moves) { return Applied(moves, weights); });
 }
 
 // The matrix of the step, times moves along the input.
@@ -305,7 +284,7 @@ BaseSlide::State BaseSlide::Moved(const std::vector<Vec3d>& moves, double factor
     if (closest.face == kNone) continue;
     const Vec3d normal = NormalAt(closest);
     if (Dot(normal, start_.normals[v]) < kLeastCosine) continue;
-    s.slid_to[v] = OnInput(closest);
+    s.slid_to[v] = InputPoint(closest);
     s.faces[v] = closest.face;
     s.at[v] = Vec3Cast<double>(closest.position);
     s.normals[v] = normal;

@@ -7,13 +7,6 @@
 #include <optional>
 
 namespace lacerta {
-namespace {
-
-DomainPoint InputPoint(const SurfacePoint& point) {
-  return {point.face, {point.barycentric[0], point.barycentric[1], point.barycentric[2]}};
-}
-
-}  // namespace
 
 // Whether the parametrization agrees that a point found on the input belongs to the middle of `edge`: not too far from it, and
 // in the chart of the base face where folds are checked; on a base edge in the two faces there. So all vertices of a level

@@ -12,6 +12,7 @@
 #include "geometry/triangle_points.h"
 #include "geometry/triangle_tree.h"
 #include "geometry/vertex_area_vectors.h"
+#include "remesh/conjugate_gradients.h"
 #include "remesh/reversal.h"
 
 namespace lacerta {
@@ -131,29 +132,6 @@ class NormalEquations {
   const double stiffness_;
 };
 
-double DotProduct(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-std::vector<double> Solve(const NormalEquations& equations, size_t num_vertices, int iterations) {
-  std::vector<double> solution(num_vertices, 0.0), residual = equations.RightSide(num_vertices), direction = residual;
-  double squared = DotProduct(residual, residual);
-  for (int i = 0; i < iterations && squared > 0; ++i) {
-    const std::vector<double> image = equations.Apply(direction);
-    const double step = squared / DotProduct(direction, image);
-    for (size_t v = 0; v < num_vertices; ++v) {
-      solution[v] += step * direction[v];
-      residual[v] -= step * image[v];
-    }
-    const double next = DotProduct(residual, residual);
-    for (size_t v = 0; v < num_vertices; ++v) direction[v] = residual[v] + next / squared * direction[v];
-    squared = next;
-  }
-  return solution;
-}
-
 // Base vertices where a cut is to stay closed: 1 for those with another one at the same place. Empty where there is no cut.
 std::vector<uint8_t> CopiedVertices(const BaseTags& tags) {
   std::vector<uint8_t> copied(tags.joined.size(), 0);
@@ -216,7 +194,8 @@ void FitToInput(const InputSurface& surface, const SurfaceFitOptions& options, N
   const double num_samples = std::min(options.samples_per_vertex * static_cast<double>(finest.positions.size()),
                                       options.samples_per_input_vertex * static_cast<double>(surface.mesh().positions.size()));
   const std::vector<Sample> samples = TakeSamples(surface, num_samples, finest, remesh->surface_normals);
-  std::vector<double> moves = Solve(NormalEquations(samples, options.stiffness), mesh.positions.size(), options.iterations);
+  const NormalEquations equations(samples, options.stiffness);
+  std::vector<double> moves = ConjugateGradients(equations.RightSide(mesh.positions.size()), options.iterations, [&](const std::vector<double>& x) { return equations.Apply(x); });
   const std::vector<uint8_t> pinned = CopiedVertices(mesh.tags);
   for (size_t v = 0; v < pinned.size(); ++v) {
     if (pinned[v]) moves[v] = 0;
