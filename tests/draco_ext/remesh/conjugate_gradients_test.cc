@@ -22,8 +22,8 @@ std::vector<Entry> Chain(const std::vector<Entry>& x) {
 }
 
 TEST(ConjugateGradients, SolveInAsManyRoundsAsThereAreUnknowns) {
-  std::vector<double> expected;
-  for (int i = 0; i < 12; ++i) expected.push_back(std::sin(1.0 + i * i));
+  std::vector<double> expected(12);
+  for (size_t i = 0; i < expected.size(); ++i) expected[i] = std::sin(1.0 + static_cast<double>(i * i));
   const std::vector<double> x = ConjugateGradients(Chain(expected), 12, Chain<double>);
   const std::vector<double> few = ConjugateGradients(Chain(expected), 2, Chain<double>);
   double far = 0;
@@ -35,8 +35,8 @@ TEST(ConjugateGradients, SolveInAsManyRoundsAsThereAreUnknowns) {
 }
 
 TEST(ConjugateGradients, TakeVectorsAsEntries) {
-  std::vector<Vec3d> expected;
-  for (int i = 0; i < 5; ++i) expected.push_back({std::sin(1.0 + i), 1.0 * i, std::cos(3.0 * i)});
+  std::vector<Vec3d> expected(5);
+  for (int i = 0; i < 5; ++i) expected[i] = {std::sin(1.0 + i), 1.0 * i, std::cos(3.0 * i)};
   const std::vector<Vec3d> x = ConjugateGradients(Chain(expected), 15, Chain<Vec3d>);
   for (size_t i = 0; i < x.size(); ++i) EXPECT_LT(Norm(x[i] - expected[i]), 1e-12);
 }
