@@ -135,21 +135,10 @@ DomainPoint CollapseHistory::BackwardOnce(const DomainPoint& point, const Collap
   const Vec2d &a = ring[c.kept], &b = ring[(c.kept + 1 + m) % k], &d = ring[(c.kept + 2 + m) % k];
   const Vec3d& w = point.barycentric;
   const Vec2d q = {w.x * a.x + w.y * b.x + w.z * d.x, w.x * a.y + w.y * b.y + w.z * d.y};
-  double best = -std::numeric_limits<double>::max();
-  int best_i = 0;
-  Vec3d best_weights{1, 0, 0};
-  for (int i = 0; i < c.num_old_faces; ++i) {
-    const Vec3d weights = BarycentricIn(q, Vec2d{}, ring[i], ring[(i + 1) % k]);
-    if (MinWeight(weights) <= best) continue;
-    best = MinWeight(weights);
-    best_i = i;
-    best_weights = weights;
-    if (best >= 0) break;
-  }
-  best_weights = ClampWeights(best_weights);
-  DomainPoint result{old_faces_[c.first_ring + best_i], {}};
+  const PlaceInFan place = FindInFan(q, {}, ring, k, c.num_old_faces);
+  DomainPoint result{old_faces_[c.first_ring + place.face], {}};
   const int r = ends_[result.face].corner;
-  for (int corner = 0; corner < 3; ++corner) result.barycentric[(r + corner) % 3] = best_weights[corner];
+  for (int corner = 0; corner < 3; ++corner) result.barycentric[(r + corner) % 3] = place.weights[corner];
   return result;
 }
 

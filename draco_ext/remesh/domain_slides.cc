@@ -1,7 +1,6 @@
 #include "remesh/domain_slides.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace lacerta {
@@ -48,18 +47,12 @@ Vec2d DomainSlides::Place(const Star& star, const DomainPoint& point, const Vec2
   return {w * center.x + wa * a.x + wb * b.x, w * center.y + wa * a.y + wb * b.y};
 }
 
-// The face of the polygon there with the vertex at `center`; by rounding the one that the place is least far out of.
 DomainPoint DomainSlides::At(const Star& star, const Vec2d& place, const Vec2d& center) {
-  double best = -std::numeric_limits<double>::infinity();
-  DomainPoint point;
-  for (size_t i = 0; i < star.chart.size() && best < 0.0; ++i) {
-    const Vec3d weights = BarycentricIn(place, center, star.chart[i], star.chart[(i + 1) % star.chart.size()]);
-    if (MinWeight(weights) <= best) continue;
-    best = MinWeight(weights);
-    const Vec3d clamped = ClampWeights(weights);
-    point.face = star.fan.faces[i];
-    for (int k = 0; k < 3; ++k) point.barycentric[(star.corners[i] + k) % 3] = clamped[k];
-  }
+  const int k = star.fan.size();
+  const PlaceInFan found = FindInFan(place, center, star.chart.data(), k, k);
+  const auto i = static_cast<size_t>(found.face);
+  DomainPoint point{star.fan.faces[i], {}};
+  for (int corner = 0; corner < 3; ++corner) point.barycentric[(star.corners[i] + corner) % 3] = found.weights[corner];
   return point;
 }
 

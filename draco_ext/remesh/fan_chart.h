@@ -59,6 +59,25 @@ std::vector<Vec2d> FlattenFan(const Vec3d& center, const Fan& fan, const std::ve
 // degrees at most, which it does at a vertex in the plane of its ring but outside of it.
 bool IsStarShaped(const std::vector<Vec2d>& chart, size_t num_faces);
 
+// The face of a fan around `center` in which a point of its chart lies, of the first num_faces between ring[i] and ring[i + 1] (the last may end at ring[0]), and its weights
+// there: of the center, then of these. By rounding in none, it is the one that it is least far out of.
+struct PlaceInFan {
+  int face = 0;
+  Vec3d weights{1, 0, 0};
+};
+inline PlaceInFan FindInFan(const Vec2d& point, const Vec2d& center, const Vec2d* ring, int size, int num_faces) {
+  PlaceInFan place;
+  double best = -std::numeric_limits<double>::max();
+  for (int i = 0; i < num_faces && best < 0; ++i) {
+    const Vec3d weights = BarycentricIn(point, center, ring[i], ring[(i + 1) % size]);
+    if (MinWeight(weights) <= best) continue;
+    best = MinWeight(weights);
+    place = {i, weights};
+  }
+  place.weights = ClampWeights(place.weights);
+  return place;
+}
+
 }  // namespace lacerta
 
 #endif  // LACERTA_REMESH_FAN_CHART_H_
