@@ -14,7 +14,6 @@
 #include "draco/input_proxy.h"
 #include "draco/rate_control.h"
 #include "draco/search_effort.h"
-#include "draco/simplifications.h"
 #include "draco/still_part.h"
 #include "draco/subdivided_input.h"
 #include "draco/within_memory.h"
@@ -27,6 +26,7 @@
 #include "lacerta/codec.h"
 #include "lacerta/decoder.h"
 #include "lacerta/surface_distance.h"
+#include "remesh/decimate.h"
 #include "remesh/input_surface.h"
 #include "remesh/mend_tears.h"
 #include "remesh/surface_parts.h"
@@ -185,9 +185,9 @@ StatusOr<ChosenStream> CodeRemeshed(ProxiedInput* input, const SurfaceDistanceMe
   if (options.progress) options.progress(0.02, "simplifying");
   const InputSurface surface(parts.refined, parts.topology);
   const SearchEffort effort = EffortOf(options.effort);
-  std::vector<CollapseHistory> histories;
+  std::optional<CollapseHistory> history;
   ForEachBranch(2, [&](size_t branch) {
-    if (branch == 0) histories = Simplifications(surface, parts.topology, effort.simplifications);
+    if (branch == 0) history.emplace(Decimate(parts.refined, parts.topology, DecimateOptions()));
     if (branch == 1 && options.levels == LevelChoice::kWhereTheyPay) simpler->emplace(mesh, input->Sequence(), meter, target, effort);
   });
   const StillPart still = PrepareStillPart(parts.still, parts.refined, distance);
@@ -201,10 +201,8 @@ StatusOr<ChosenStream> CodeRemeshed(ProxiedInput* input, const SurfaceDistanceMe
                              },
                              [&](double bytes) { return (*simpler)->MayTakeFewerThan(bytes); },
                              [&](double bytes) { (*simpler)->PrepareBeside(bytes); }};
-  std::vector<RefinableSurface> simplifications;
-  simplifications.reserve(histories.size());
-  for (const CollapseHistory& history : histories) simplifications.push_back({surface, history, still.mesh});
-  return CodeAtTarget(simplifications, meter, target, options.mode, options.progress, effort, *simpler ? &rival : nullptr);
+  const RefinableSurface refinable{surface, *history, still.mesh};
+  return CodeAtTarget(refinable, meter, target, options.mode, options.progress, effort, *simpler ? &rival : nullptr);
 }
 
 // The surface at the target on its own connectivity, remeshed, or as a simplified mesh without levels, whichever is better. crowding: of

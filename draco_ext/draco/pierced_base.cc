@@ -8,7 +8,7 @@
 #include "encoder/quantizer.h"
 #include "lacerta/surface_distance.h"
 #include "remesh/base_parts.h"
-#include "remesh/base_slide.h"
+#include "remesh/base_optimization.h"
 #include "remesh/piercing.h"
 #include "remesh/reversal.h"
 
@@ -17,7 +17,9 @@ namespace lacerta {
 StatusOr<std::unique_ptr<PiercedBase>> PiercedBase::Make(const RefinableSurface& input, uint32_t time, std::vector<uint32_t> held, BaseCoding coding) {
   BaseDomain domain(input.history, input.history.CutWithout(held, time));
   const uint32_t num_refined = domain.num_vertices();
-  const TriangleMesh nominal = Together({domain.PositionsOn(input.surface.mesh()), domain.triangles()}, input.still);
+  std::vector<Vec3f> slid = domain.PositionsOn(input.surface.mesh());
+  OptimizeBase(input.surface, &domain, &slid);
+  const TriangleMesh nominal = Together({slid, domain.triangles()}, input.still);
   const auto nominal_step = static_cast<float>(kNominalStep * BoundingBoxDiagonal(nominal));
   LACERTA_ASSIGN_OR_RETURN(CodedBase base, EncodeBaseMesh(RoundToLattice(nominal, nominal_step), coding));
 
@@ -32,7 +34,6 @@ StatusOr<std::unique_ptr<PiercedBase>> PiercedBase::Make(const RefinableSurface&
   domain.Reorder(base.vertex_map, split);
   std::vector<Vec3f> positions;
   for (const uint32_t v : base.vertex_map) positions.push_back(nominal.positions[v]);
-  SlideBase(input.surface, &domain, &positions);
   domain.Join(JoinedVertices(positions));
   return std::unique_ptr<PiercedBase>(
       new PiercedBase(input, std::move(base), std::move(domain), positions, std::move(still), std::move(held)));

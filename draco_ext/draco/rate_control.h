@@ -54,10 +54,9 @@ struct RivalStream {
 
 // Codes the surface at the target: fewest bytes at a PSNR, highest PSNR at a number of bytes. Where no base size reaches the
 // target the nearest stream is returned, and says so.
-// simplifications: at least one, each of the same surface in another way; over which of them a stream takes the fewest bytes is up to the surface.
 // progress: as in EncodeOptions, may be empty. rival: may be null; once it takes fewer bytes than streams with levels will at least, kUnsupported is
 // returned.
-StatusOr<ChosenStream> CodeAtTarget(const std::vector<RefinableSurface>& simplifications, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
+StatusOr<ChosenStream> CodeAtTarget(const RefinableSurface& surface, const SurfaceDistanceMeter& meter, const ResolvedTarget& target, EncodeMode mode,
                                     const std::function<void(double, const char*)>& progress, const SearchEffort& effort = SearchEffort(),
                                     const RivalStream* rival = nullptr);
 

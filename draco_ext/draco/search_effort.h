@@ -12,7 +12,6 @@ struct SearchEffort {
   // Shares of the bytes: neighbors that are worse by that end the walk over base sizes; candidates that are worse by that than the best are not
   // taken to the target beside it.
   double much_worse = 0.06, hopeless = 0.015;
-  size_t simplifications = 2;  // of the surface, over which bases are tried
   bool every_size = false;     // sizes halfway between those of the walk are tried, too, beside the best
   size_t enough_bases = 100;   // after so many the best is taken, worse neighbors on either side or not; 1: the usual size, where it can do
   size_t at_a_time = 2;        // of those, taken to the target together: the best of them is kept
@@ -27,7 +26,7 @@ struct SearchEffort {
 inline SearchEffort EffortOf(Effort effort) {
   SearchEffort result;
   if (effort == Effort::kFast) {
-    result.simplifications = result.enough_bases = result.at_a_time = 1;
+    result.enough_bases = result.at_a_time = 1;
     result.score_passes = 1;
     result.meet_passes = 3;
     result.suit_passes = 0;

@@ -6,7 +6,7 @@
 
 namespace lacerta {
 
-double UsualBasePsnr(double psnr) { return 42.5 + 0.4 * (psnr - 70); }
+double UsualBasePsnr(double psnr) { return 43.5 + 0.5 * (psnr - 70); }
 
 double BasePsnr(const RefinableSurface& surface, uint32_t num_vertices, const SurfaceDistanceMeter& meter) {
   constexpr uint64_t kFewSamples = 5'000;

@@ -8,7 +8,7 @@
 #include "remesh/attribute_fit.h"
 #include "remesh/base_attributes.h"
 #include "remesh/base_parts.h"
-#include "remesh/base_slide.h"
+#include "remesh/base_optimization.h"
 #include "remesh/decimate.h"
 #include "remesh/level_attributes.h"
 #include "remesh/level_wedges.h"
@@ -50,7 +50,9 @@ StatusOr<AttributedNormalMesh> RemeshAttributed(const AttributedParts& parts, co
   const TriangleMesh& mesh = parts.refined.surface;
   BaseDomain domain(history, history.CollapsesTo(options.num_base_vertices));
   const uint32_t num_refined = domain.num_vertices();
-  const TriangleMesh base = Together({domain.PositionsOn(mesh), domain.triangles()}, parts.still.surface);
+  std::vector<Vec3f> slid = domain.PositionsOn(mesh);
+  OptimizeBase(surface, &domain, &slid);
+  const TriangleMesh base = Together({slid, domain.triangles()}, parts.still.surface);
   BaseOrder order = Unchanged(base);
   if (options.order) {
     LACERTA_ASSIGN_OR_RETURN(order, options.order(base));
@@ -68,7 +70,6 @@ StatusOr<AttributedNormalMesh> RemeshAttributed(const AttributedParts& parts, co
     still_vertex.push_back(v >= num_refined ? v - num_refined : kNone);
   }
   domain.Reorder(order.vertex_map, split);
-  SlideBase(surface, &domain, &positions);
   domain.Join(JoinedVertices(positions));
 
   AttributedNormalMesh result;

@@ -2,13 +2,26 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace lacerta {
+namespace {
+
+std::vector<Vec3d> InDoubles(const std::vector<Vec3f>& positions) {
+  std::vector<Vec3d> result;
+  result.reserve(positions.size());
+  for (const Vec3f& p : positions) result.push_back(Vec3Cast<double>(p));
+  return result;
+}
+
+}  // namespace
 
 BaseDomain::BaseDomain(const CollapseHistory& history, HistoryCut cut) : history_(history), cut_(std::move(cut)) {
   history_face_ = history.FacesAt(cut_);
   rotation_.assign(history_face_.size(), 0);
+  face_of_history_.assign(history.num_faces(), kNone);
+  moves_ = DomainMoves(history_face_.size());
   for (const uint32_t f : history_face_) {
     for (const uint32_t v : history.face(f)) input_vertex_.push_back(v);
   }
@@ -19,19 +32,23 @@ BaseDomain::BaseDomain(const CollapseHistory& history, HistoryCut cut) : history
     for (uint32_t& v : t) {
       v = static_cast<uint32_t>(std::lower_bound(input_vertex_.begin(), input_vertex_.end(), v) - input_vertex_.begin());
     }
+    face_of_history_[f] = static_cast<uint32_t>(triangles_.size());
+    first_face_.push_back(static_cast<uint32_t>(triangles_.size()));
     triangles_.push_back(t);
+    uint8_t sides = 0;
+    for (int k = 0; k < 3; ++k) sides |= static_cast<uint8_t>(history.is_curve(f, k) << k);
+    curve_sides_.push_back(sides);
   }
+  slid_to_.assign(num_vertices(), {});
   BuildTables();
 }
 
 void BaseDomain::BuildTables() {
-  base_face_.assign(history_.num_faces(), kNone);
-  for (uint32_t f = 0; f < history_face_.size(); ++f) base_face_[history_face_[f]] = f;
+  base_face_.resize(first_face_.size());
+  for (uint32_t f = 0; f < first_face_.size(); ++f) base_face_[first_face_[f]] = f;
   topology_ = BuildTopology(num_vertices(), triangles_).value();  // a manifold stays one through every collapse
   tags_ = FindTags();
   if (!tags_.empty()) topology_ = BuildTopology(num_vertices(), triangles_, tags_).value();
-  slides_ = DomainSlides(topology_);
-  slid_to_.assign(num_vertices(), {});
 }
 
 BaseTags BaseDomain::FindTags() const {
@@ -40,7 +57,7 @@ BaseTags BaseDomain::FindTags() const {
   std::vector<uint32_t> num_curve_edges(num_vertices(), 0);
   for (uint32_t e = 0; e < topology_.num_edges(); ++e) {
     const uint32_t f = topology_.edge_faces[e][0];
-    const bool on_curve = history_.is_curve(history_face_[f], (EdgeCorner(topology_, f, e) + rotation_[f]) % 3);
+    const bool on_curve = (curve_sides_[f] >> EdgeCorner(topology_, f, e) & 1) != 0;
     crease[e] = on_curve && !topology_.is_border(e);
     for (const uint32_t v : topology_.edges[e]) num_curve_edges[v] += on_curve;
   }
@@ -66,22 +83,30 @@ void BaseDomain::Reorder(const std::vector<uint32_t>& vertex_map, const std::vec
     for (uint32_t& v : t) v = new_vertex[v];
     old_face[canonical(t)] = f;
   }
-  std::vector<uint32_t> history_face;
-  std::vector<uint8_t> rotation;
+  std::vector<uint32_t> first_face;
+  std::vector<uint8_t> rotation, curve_sides;
   for (const Triangle& t : triangles) {
     const uint32_t old = old_face.at(canonical(t));
     int shift = 0;
     while (new_vertex[triangles_[old][shift]] != t[0]) ++shift;
-    history_face.push_back(history_face_[old]);
+    first_face.push_back(first_face_[old]);
     rotation.push_back(static_cast<uint8_t>((rotation_[old] + shift) % 3));
+    uint8_t sides = 0;
+    for (int k = 0; k < 3; ++k) sides |= static_cast<uint8_t>((curve_sides_[old] >> (k + shift) % 3 & 1) << k);
+    curve_sides.push_back(sides);
   }
   std::vector<uint32_t> input_vertex(vertex_map.size(), kNone);
+  std::vector<DomainPoint> slid_to(vertex_map.size());
   for (uint32_t v = 0; v < vertex_map.size(); ++v) {
-    if (vertex_map[v] < input_vertex_.size()) input_vertex[v] = input_vertex_[vertex_map[v]];
+    if (vertex_map[v] >= input_vertex_.size()) continue;
+    input_vertex[v] = input_vertex_[vertex_map[v]];
+    slid_to[v] = slid_to_[vertex_map[v]];
   }
   triangles_ = triangles;
   input_vertex_ = std::move(input_vertex);
-  history_face_ = std::move(history_face);
+  slid_to_ = std::move(slid_to);
+  first_face_ = std::move(first_face);
+  curve_sides_ = std::move(curve_sides);
   rotation_ = std::move(rotation);
   BuildTables();
 }
@@ -92,12 +117,40 @@ void BaseDomain::Join(std::vector<uint32_t> joined) {
 }
 
 void BaseDomain::Slide(const std::vector<DomainPoint>& to, const std::vector<Vec3f>& positions) {
-  std::vector<Vec3d> before;
-  before.reserve(positions.size());
-  for (const Vec3f& p : positions) before.push_back(Vec3Cast<double>(p));
+  const std::vector<Vec3d> before = InDoubles(positions);
   for (uint32_t v = 0; v < num_vertices(); ++v) {
-    if (to[v].face != kNone && slides_.Move(v, OnBaseFace(history_.Forward(to[v], cut_)), topology_, before)) slid_to_[v] = to[v];
+    const bool has_moved = to[v].face != slid_to_[v].face || !(to[v].barycentric == slid_to_[v].barycentric);
+    if (to[v].face != kNone && has_moved && moves_.Slide(v, OnFirstFace(history_.Forward(to[v], cut_)), topology_, before)) slid_to_[v] = to[v];
   }
+}
+
+size_t BaseDomain::Flip(const std::vector<uint32_t>& edges, const std::vector<Vec3f>& positions) {
+  const std::vector<Vec3d> at = InDoubles(positions);
+  std::set<std::array<uint32_t, 2>> joined;
+  const auto ordered = [](uint32_t a, uint32_t b) { return std::array<uint32_t, 2>{std::min(a, b), std::max(a, b)}; };
+  for (const auto& [a, b] : topology_.edges) joined.insert(ordered(a, b));
+  size_t flipped = 0;
+  for (const uint32_t e : edges) {
+    if (topology_.on_curve[e] != 0) continue;
+    const auto& [f, g] = topology_.edge_faces[e];
+    const int at_c = EdgeCorner(topology_, f, e), at_d = EdgeCorner(topology_, g, e);
+    const uint32_t c = triangles_[f][at_c], d = triangles_[g][at_d];
+    if (c == d || joined.count(ordered(c, d)) > 0 || !moves_.Flip(e, topology_, at)) continue;
+    joined.erase(ordered(topology_.edges[e][0], topology_.edges[e][1]));
+    joined.insert(ordered(c, d));
+    // f is (c, a, b) and becomes (c, a, d); g is (d, b, a) and becomes (d, b, c).
+    const auto side = [&](uint32_t face, int corner) { return curve_sides_[face] >> corner % 3 & 1; };
+    const auto bit = [](int is_set, int corner) { return static_cast<uint8_t>(is_set << corner % 3); };
+    const uint8_t new_f = bit(side(f, at_c + 2), at_c + 2) | bit(side(g, at_d + 1), at_c);
+    const uint8_t new_g = bit(side(g, at_d + 2), at_d + 2) | bit(side(f, at_c + 1), at_d);
+    curve_sides_[f] = new_f;
+    curve_sides_[g] = new_g;
+    triangles_[f][(at_c + 2) % 3] = d;
+    triangles_[g][(at_d + 2) % 3] = c;
+    ++flipped;
+  }
+  BuildTables();
+  return flipped;
 }
 
 std::vector<Vec3f> BaseDomain::PositionsOn(const TriangleMesh& input) const {
@@ -114,20 +167,20 @@ DomainPoint BaseDomain::OnBaseFace(const DomainPoint& p) const {
 }
 
 DomainPoint BaseDomain::FromInput(const DomainPoint& on_input) const {
-  return slides_.Forward(OnBaseFace(history_.Forward({on_input.face, ClampWeights(on_input.barycentric)}, cut_)));
+  return OnBaseFace(moves_.Forward(OnFirstFace(history_.Forward({on_input.face, ClampWeights(on_input.barycentric)}, cut_))));
 }
 
 void BaseDomain::FromInput(std::vector<DomainPoint>* points) const {
   for (DomainPoint& p : *points) p.barycentric = ClampWeights(p.barycentric);
   history_.Forward(points, cut_);
-  for (DomainPoint& p : *points) p = slides_.Forward(OnBaseFace(p));
+  for (DomainPoint& p : *points) p = OnBaseFace(moves_.Forward(OnFirstFace(p)));
 }
 
 DomainPoint BaseDomain::ToInput(const DomainPoint& point) const {
-  const DomainPoint on_base = slides_.Backward(point);
-  DomainPoint p{history_face_[on_base.face], {}};
-  for (int k = 0; k < 3; ++k) p.barycentric[(k + rotation_[on_base.face]) % 3] = on_base.barycentric[k];
-  return history_.Backward(p);
+  DomainPoint p{first_face_[point.face], {}};
+  for (int k = 0; k < 3; ++k) p.barycentric[(k + rotation_[point.face]) % 3] = point.barycentric[k];
+  p = moves_.Backward(p);
+  return history_.Backward({history_face_[p.face], p.barycentric});
 }
 
 std::optional<ChartPoint> BaseDomain::ToChart(uint32_t center, const DomainPoint& point) const {

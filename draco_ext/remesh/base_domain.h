@@ -10,7 +10,7 @@
 #include "geometry/triangle_tree.h"
 #include "lacerta/mesh.h"
 #include "remesh/collapse_history.h"
-#include "remesh/domain_slides.h"
+#include "remesh/domain_moves.h"
 
 namespace lacerta {
 
@@ -31,7 +31,7 @@ class BaseDomain {
   // Input vertex at which a base vertex stands, or stood before it slid; kNone for those that Reorder has put in.
   uint32_t input_vertex(uint32_t v) const { return input_vertex_[v]; }
   // The collapse that made a base face, or kNone where it is one of the input's.
-  uint32_t created_by(uint32_t f) const { return history_.created_by(history_face_[f]); }
+  uint32_t created_by(uint32_t f) const { return history_.created_by(history_face_[first_face_[f]]); }
   // With creases and corners, and with joined borders after Join.
   const Topology& topology() const { return topology_; }
   // Positions of the base vertices on the input; the origin for those that Reorder has put in.
@@ -47,9 +47,10 @@ class BaseDomain {
   // known before anything is refined. After Reorder, which forgets it. joined: #V0.
   void Join(std::vector<uint32_t> joined);
 
-  // Vertices slide to points of the input (face kNone: those that stay), where the domain lets them (DomainSlides). After Reorder, which forgets it. to: #V0; positions: #V0,
-  // where they stand.
+  // Vertices slide to points of the input (face kNone: those that stay), where the domain lets them (DomainMoves). Before Reorder. to: #V0; positions: #V0, where they stand.
   void Slide(const std::vector<DomainPoint>& to, const std::vector<Vec3f>& positions);
+  // Turns edges without a face in common where the domain lets them (DomainMoves), and where no other edge joins the same vertices already. Before Reorder. positions: #V0, where vertices stand. Returns how many.
+  size_t Flip(const std::vector<uint32_t>& edges, const std::vector<Vec3f>& positions);
   // The point of the input at which a base vertex stands if it has slid there, else face kNone.
   const DomainPoint& slid_to(uint32_t v) const { return slid_to_[v]; }
 
@@ -64,7 +65,8 @@ class BaseDomain {
   std::optional<DomainPoint> FromChart(uint32_t center, const ChartPoint& point) const;
 
  private:
-  DomainPoint OnBaseFace(const DomainPoint& on_history_face) const;
+  DomainPoint OnFirstFace(const DomainPoint& on_history_face) const { return {face_of_history_[on_history_face.face], on_history_face.barycentric}; }
+  DomainPoint OnBaseFace(const DomainPoint& on_first_face) const;
   void BuildTables();
   BaseTags FindTags() const;
 
@@ -72,12 +74,15 @@ class BaseDomain {
   HistoryCut cut_;
   std::vector<Triangle> triangles_;          // #F0 base vertices
   std::vector<uint32_t> input_vertex_;       // #V0
-  std::vector<uint32_t> history_face_;       // #F0
-  std::vector<uint8_t> rotation_;            // corner of the history face at corner 0 of the base face
-  std::vector<uint32_t> base_face_;          // by history face, or kNone
+  std::vector<uint8_t> curve_sides_;         // #F0, bit k for the side opposite to corner k
+  std::vector<uint32_t> history_face_;       // #F0, in the first order
+  std::vector<uint32_t> face_of_history_;    // the inverse, or kNone
+  DomainMoves moves_;                        // of faces in the first order
+  std::vector<uint32_t> first_face_;         // #F0: number in the first order
+  std::vector<uint32_t> base_face_;          // the inverse
+  std::vector<uint8_t> rotation_;            // corner of the face in the first order at corner 0 of the base face
   BaseTags tags_;
   Topology topology_;
-  DomainSlides slides_{Topology()};
   std::vector<DomainPoint> slid_to_;         // #V0
 };
 

@@ -209,7 +209,7 @@ double Decimator::Cost(uint32_t v, const Fan& fan, const std::vector<Vec2d>& cha
   // Nor is a triangle of much use that faces away from the input at its own corners.
   const double turning_penalty = 1 + 5 * std::max(0.0, -worst_cosine);
   const double valence_penalty = 1 + 0.25 * std::max(0.0, valence - 7);
-  return LeastCost(v, u) * std::pow(worst_aspect, options_.aspect_power) * valence_penalty * coverage * coverage * turning_penalty;
+  return LeastCost(v, u) * worst_aspect * valence_penalty * coverage * coverage * turning_penalty;
 }
 
 Candidate Decimator::BestCandidate(uint32_t v, const Fan& fan, const std::vector<Vec2d>& chart) const {

@@ -16,7 +16,6 @@ struct DecimateOptions {
   uint32_t target_vertices = 16;   // stop there; earlier where no collapse is sound any more
   int max_valence = 12;            // of a base vertex, at most 64; one that the input has more of may stay
   double min_normal_cosine = 0.2;  // between a new triangle and the one it replaces
-  double aspect_power = 1;         // of the worst aspect ratio, in the cost of a collapse: 2 makes for rounder triangles
   // #E of the topology, or empty. 1: a curve where the shape shows none, kept in place like a border
   std::vector<uint8_t> drawn_curves = {};
 };

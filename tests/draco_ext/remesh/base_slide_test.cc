@@ -24,7 +24,7 @@ struct Slid {
   Slid(const TriangleMesh& input, uint32_t num_vertices, bool slides)
       : mesh(input), topology(TopologyOf(mesh)), surface(mesh, topology), history(Decimated(mesh, {num_vertices, 12, 0.2})), domain(history, history.num_collapses()),
         start(domain.PositionsOn(mesh)), positions(start) {
-    if (slides) SlideBase(surface, &domain, &positions);
+    if (slides) SlideBase(surface, &domain, &positions, 10'000);
   }
   size_t NumMoved() const {
     return static_cast<size_t>(std::count_if(positions.begin(), positions.end(), [&](const Vec3f& p) { return p != start[static_cast<size_t>(&p - positions.data())]; }));
@@ -114,10 +114,6 @@ TEST(SlideBase, CurvesStay) {
 
 TEST(SlideBase, WhatIsFlatStays) {
   EXPECT_EQ(Slid(shapes::GridWithBorder(20, 20), 30, true).NumMoved(), 0u);
-}
-
-TEST(SlideBase, LargeBasesStay) {
-  EXPECT_EQ(Slid(shapes::BumpySphere(6), 12'000, true).NumMoved(), 0u);
 }
 
 TEST(SlideBase, IsTheSameOnOneThreadAndAtAnotherScale) {
