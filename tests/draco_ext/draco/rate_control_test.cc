@@ -75,7 +75,7 @@ struct Coder {
 
 TEST(CodeAtTargetTest, BasesGrowWithTheQualityAskedFor) {
   const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
-  const ChosenStream coarse = coder.Code({false, 0, 36}), fine = coder.Code({false, 0, 60}), finest = coder.Code({false, 0, 75});  // its noise, too
+  const ChosenStream coarse = coder.Code({false, 0, 34}), fine = coder.Code({false, 0, 60}), finest = coder.Code({false, 0, 75});  // its noise, too
   for (const ChosenStream* chosen : {&coarse, &fine, &finest}) EXPECT_TRUE(chosen->measured.meets_target);
   EXPECT_LE(4 * coarse.measured.stream.decoded.num_base_vertices, finest.measured.stream.decoded.num_base_vertices);
   EXPECT_GE(fine.measured.stream.size(), 2 * coarse.measured.stream.size());
@@ -112,7 +112,7 @@ TEST(CodeAtTargetTest, EffortTradesBaseSizesForBytes) {
     int rounds = 0;
     const auto progress = [&](double, const char* stage) { rounds += std::string(stage) == "choosing the base mesh"; };
     const ChosenStream chosen =
-        CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, {false, 0, 54}, EncodeMode::kDefault, progress, EffortOf(effort)).value();
+        CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, {false, 0, 57}, EncodeMode::kDefault, progress, EffortOf(effort)).value();
     EXPECT_TRUE(chosen.measured.meets_target);
     return Outcome{static_cast<double>(chosen.measured.stream.size()), rounds};
   };
@@ -194,7 +194,7 @@ TEST(CodeAtTargetTest, GivesUpWhereItIsOutdone) {
 
 TEST(CodeAtTargetTest, TheWalkOverBasesEndsWhereTheBestCanHardlyGetAsSmallAsTheRival) {
   const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
-  const ResolvedTarget psnr{false, 0, 56};
+  const ResolvedTarget psnr{false, 0, 58};
   NotingRival large{1e9};
   const auto size = static_cast<double>(large.Code(coder, psnr, Effort::kNormal).value().measured.stream.size());
   ASSERT_GE(large.asked.size(), 3u);
