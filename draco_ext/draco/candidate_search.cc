@@ -32,6 +32,7 @@ constexpr int kMostDraws = 4, kSettlePasses = 2;  // passes: from a stream near 
 constexpr double kComparable = 0.7;  // dB from the goal: from farther off, extrapolation favors what hardly can reach it
 constexpr double kNearEnough = 0.4;  // dB: typical slopes will do
 constexpr int kMeetTries = 16, kEstimatedTries = 6, kSettlingTries = 11;
+constexpr double kDefect = 0.3;      // dB that a stream may measure less than estimated: usual ones are within 0.1, the others have vertices astray that planes do not show
 constexpr double kStepChange = 1.5;  // between slopes of steps that are tried
 
 }  // namespace
@@ -297,7 +298,7 @@ StatusOr<MeasuredStream> CandidateSearch::MeetQuality(Attempt drawn) {
   };
   const auto is_done = [&] { return best && rank(*best) == 2; };
 
-  const std::optional<CodedSurface> from = SettleFrom(drawn);
+  std::optional<CodedSurface> from = SettleFrom(drawn);
   StatusOr<Attempt> attempt = std::move(drawn);
   std::map<double, double> measured;  // dB by ln(lambda)
   std::optional<Attempt> unmeasured;
@@ -310,7 +311,9 @@ StatusOr<MeasuredStream> CandidateSearch::MeetQuality(Attempt drawn) {
       continue;
     }
     measured[log_lambda] = measure(std::move(attempt).value());
-    offset_ = measured[log_lambda] - estimate;
+    const double offset = measured[log_lambda] - estimate;
+    if (offset < *offset_ - kDefect) from.reset();  // descents from there would keep it
+    offset_ = offset;
     unmeasured.reset();
   }
   if (unmeasured && !is_done()) {
