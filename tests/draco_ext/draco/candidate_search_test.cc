@@ -81,7 +81,7 @@ TEST(CandidateSearchOfNoiseTest, KeepsWhatItsScoreForesees) {
     int num_levels;
     double below;  // the remesh, dB
   };
-  for (const Case& c : {Case{60, 3, 7.0}, Case{250, 4, 6.0}}) {
+  for (const Case& c : {Case{60, 3, 7.0}, Case{250, 4, 7.0}}) {
     const NormalMeshCandidate candidate = testing::MakeCandidate({surface, history, {}}, c.num_base_vertices, c.num_levels);
     const double remesh_psnr = Psnr(meter.Measure(candidate.RemeshedSurface()).value().Rms(), meter.diagonal());
     CandidateSearch search(candidate, remesh_psnr, meter, {false, 0, remesh_psnr - c.below}, EncodeMode::kDefault);
