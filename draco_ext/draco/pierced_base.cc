@@ -7,8 +7,8 @@
 #include "common/base_tags.h"
 #include "encoder/quantizer.h"
 #include "lacerta/surface_distance.h"
-#include "remesh/base_parts.h"
 #include "remesh/base_optimization.h"
+#include "remesh/base_parts.h"
 #include "remesh/piercing.h"
 #include "remesh/reversal.h"
 

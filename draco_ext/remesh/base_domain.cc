@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "remesh/edge_quad.h"
+
 namespace lacerta {
 namespace {
 
@@ -132,21 +134,17 @@ size_t BaseDomain::Flip(const std::vector<uint32_t>& edges, const std::vector<Ve
   size_t flipped = 0;
   for (const uint32_t e : edges) {
     if (topology_.on_curve[e] != 0) continue;
-    const auto& [f, g] = topology_.edge_faces[e];
-    const int at_c = EdgeCorner(topology_, f, e), at_d = EdgeCorner(topology_, g, e);
-    const uint32_t c = triangles_[f][at_c], d = triangles_[g][at_d];
-    if (c == d || joined.count(ordered(c, d)) > 0 || !moves_.Flip(e, topology_, at)) continue;
-    joined.erase(ordered(topology_.edges[e][0], topology_.edges[e][1]));
-    joined.insert(ordered(c, d));
-    // f is (c, a, b) and becomes (c, a, d); g is (d, b, a) and becomes (d, b, c).
+    const EdgeQuad q(topology_, e);
+    if (q.c == q.d || joined.count(ordered(q.c, q.d)) > 0 || !moves_.Flip(e, topology_, at)) continue;
+    joined.erase(ordered(q.a, q.b));
+    joined.insert(ordered(q.c, q.d));
     const auto side = [&](uint32_t face, int corner) { return curve_sides_[face] >> corner % 3 & 1; };
     const auto bit = [](int is_set, int corner) { return static_cast<uint8_t>(is_set << corner % 3); };
-    const uint8_t new_f = bit(side(f, at_c + 2), at_c + 2) | bit(side(g, at_d + 1), at_c);
-    const uint8_t new_g = bit(side(g, at_d + 2), at_d + 2) | bit(side(f, at_c + 1), at_d);
-    curve_sides_[f] = new_f;
-    curve_sides_[g] = new_g;
-    triangles_[f][(at_c + 2) % 3] = d;
-    triangles_[g][(at_d + 2) % 3] = c;
+    const uint8_t new_f = bit(side(q.f, q.at_c + 2), q.at_c + 2) | bit(side(q.g, q.at_d + 1), q.at_c);
+    const uint8_t new_g = bit(side(q.g, q.at_d + 2), q.at_d + 2) | bit(side(q.f, q.at_c + 1), q.at_d);
+    curve_sides_[q.f] = new_f;
+    curve_sides_[q.g] = new_g;
+    q.Turn(q.f, q.g, &triangles_);
     ++flipped;
   }
   BuildTables();

@@ -11,6 +11,7 @@
 #include "lacerta/mesh.h"
 #include "remesh/collapse_history.h"
 #include "remesh/domain_moves.h"
+#include "remesh/input_surface.h"
 
 namespace lacerta {
 
@@ -85,6 +86,12 @@ class BaseDomain {
   Topology topology_;
   std::vector<DomainPoint> slid_to_;         // #V0
 };
+
+// The input's normal where a base vertex stands, which is no isolated one.
+inline Vec3f NormalAtBase(const InputSurface& surface, const BaseDomain& domain, uint32_t v) {
+  const DomainPoint& slid_to = domain.slid_to(v);
+  return slid_to.face != kNone ? surface.NormalAt(slid_to.face, slid_to.barycentric) : surface.vertex_normal(domain.input_vertex(v));
+}
 
 }  // namespace lacerta
 

@@ -11,26 +11,10 @@
 
 #include "common/subdivision.h"
 #include "remesh/base_midpoints.h"
+#include "remesh/edge_quad.h"
 
 namespace lacerta {
 namespace {
-
-// The edge of the faces f, (c, a, b), and g, (d, b, a), which turns to be that of (c, a, d) and (d, b, c).
-struct Quad {
-  Quad(const Topology& t, uint32_t edge)
-      : f(t.edge_faces[edge][0]),
-        g(t.edge_faces[edge][1]),
-        at_c(EdgeCorner(t, f, edge)),
-        at_d(EdgeCorner(t, g, edge)),
-        a(t.triangles[f][(at_c + 1) % 3]),
-        b(t.triangles[f][(at_c + 2) % 3]),
-        c(t.triangles[f][at_c]),
-        d(t.triangles[g][at_d]) {}
-
-  uint32_t f, g;
-  int at_c, at_d;  // corners of f and g
-  uint32_t a, b, c, d;
-};
 
 // Faces of the base as a mesh of their own.
 struct Patch {
@@ -52,8 +36,8 @@ class FlipSearch {
     std::vector<uint32_t> region;  // faces over which predictions change
   };
 
-  bool MayTurn(const Quad& quad) const;
-  Trial Try(const Quad& quad) const;
+  bool MayTurn(const EdgeQuad& quad) const;
+  Trial Try(const EdgeQuad& quad) const;
   std::vector<uint32_t> FacesAround(const std::vector<uint32_t>& vertices) const;
   std::vector<uint32_t> VerticesOf(const std::vector<uint32_t>& faces) const;
   std::optional<double> Cost(const Patch& patch) const;
@@ -91,7 +75,7 @@ std::vector<uint32_t> FlipSearch::Run() const {
   std::vector<Trial> trials(topology_.num_edges());
   tbb::parallel_for(uint32_t{0}, topology_.num_edges(), [&](uint32_t e) {
     if (topology_.on_curve[e] != 0) return;
-    if (const Quad quad(topology_, e); MayTurn(quad)) trials[e] = Try(quad);
+    if (const EdgeQuad quad(topology_, e); MayTurn(quad)) trials[e] = Try(quad);
   });
   std::vector<uint32_t> gaining;
   for (uint32_t e = 0; e < trials.size(); ++e) {
@@ -110,7 +94,7 @@ std::vector<uint32_t> FlipSearch::Run() const {
 }
 
 // Whether turning the edge is worth a trial: hardly one that becomes much longer gains, and none may lie across a fold.
-bool FlipSearch::MayTurn(const Quad& q) const {
+bool FlipSearch::MayTurn(const EdgeQuad& q) const {
   constexpr int kLeastValence = 3, kMostValence = 9;
   constexpr double kMostLength = 1.6;   // over what it was
   constexpr double kLeastCosine = 0.5;  // between a new triangle's normal and the input's at its corners
@@ -125,7 +109,7 @@ bool FlipSearch::MayTurn(const Quad& q) const {
   return lies_along({q.c, q.a, q.d}) && lies_along({q.d, q.b, q.c});
 }
 
-FlipSearch::Trial FlipSearch::Try(const Quad& q) const {
+FlipSearch::Trial FlipSearch::Try(const EdgeQuad& q) const {
   constexpr double kIrregular = 3.0;  // bits that a vertex is worth for each edge that it has more or less than six
   Trial trial;
   trial.region = FacesAround({q.a, q.b, q.c, q.d});
@@ -138,8 +122,7 @@ FlipSearch::Trial FlipSearch::Try(const Quad& q) const {
     patch.counts.push_back(std::binary_search(trial.region.begin(), trial.region.end(), f));
   }
   const std::optional<double> before = Cost(patch);
-  patch.triangles[IndexOf(q.f, faces)][(q.at_c + 2) % 3] = IndexOf(q.d, patch.vertices);
-  patch.triangles[IndexOf(q.g, faces)][(q.at_d + 2) % 3] = IndexOf(q.c, patch.vertices);
+  q.Turn(IndexOf(q.f, faces), IndexOf(q.g, faces), &patch.triangles);
   const std::optional<double> after = Cost(patch);
   if (!before || !after) return trial;
   trial.gain = *before - *after;

@@ -50,9 +50,8 @@ PointsOnInput BaseOnInput(const InputSurface& surface, const BaseDomain& domain,
   points.Resize(num_points);
   for (uint32_t v = 0; v < domain.num_vertices(); ++v) {
     points.at[v] = Vec3Cast<double>(positions[v]);
-    const DomainPoint& slid_to = domain.slid_to(v);
-    points.faces[v] = slid_to.face;
-    points.normals[v] = Vec3Cast<double>(slid_to.face != kNone ? surface.NormalAt(slid_to.face, slid_to.barycentric) : surface.vertex_normal(domain.input_vertex(v)));
+    points.normals[v] = Vec3Cast<double>(NormalAtBase(surface, domain, v));
+    points.faces[v] = domain.slid_to(v).face;
   }
   return points;
 }

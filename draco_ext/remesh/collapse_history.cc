@@ -135,8 +135,8 @@ DomainPoint CollapseHistory::BackwardOnce(const DomainPoint& point, const Collap
   const Vec2d &a = ring[c.kept], &b = ring[(c.kept + 1 + m) % k], &d = ring[(c.kept + 2 + m) % k];
   const Vec3d& w = point.barycentric;
   const Vec2d q = {w.x * a.x + w.y * b.x + w.z * d.x, w.x * a.y + w.y * b.y + w.z * d.y};
-  const PlaceInFan place = FindInFan(q, {}, ring, k, c.num_old_faces);
-  DomainPoint result{old_faces_[c.first_ring + place.face], {}};
+  const PlaceInTriangles place = FindInTriangles(q, c.num_old_faces, [&](int i) { return std::array<Vec2d, 3>{Vec2d{}, ring[i], ring[(i + 1) % k]}; });
+  DomainPoint result{old_faces_[c.first_ring + place.triangle], {}};
   const int r = ends_[result.face].corner;
   for (int corner = 0; corner < 3; ++corner) result.barycentric[(r + corner) % 3] = place.weights[corner];
   return result;

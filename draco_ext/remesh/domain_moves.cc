@@ -1,9 +1,9 @@
 #include "remesh/domain_moves.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
+
+#include "remesh/edge_quad.h"
 
 namespace lacerta {
 namespace {
@@ -54,29 +54,27 @@ bool DomainMoves::Slide(uint32_t v, const DomainPoint& to, const Topology& topol
 
 bool DomainMoves::Flip(uint32_t edge, const Topology& topology, const std::vector<Vec3d>& positions) {
   constexpr double kLeastShare = 0.15;  // of the quadrangle that either new triangle has
-  const auto& [f, g] = topology.edge_faces[edge];
-  if (g == kNone) return false;
-  const int at_c = EdgeCorner(topology, f, edge), at_d = EdgeCorner(topology, g, edge);
-  const auto position = [&](uint32_t face, int corner) { return positions[topology.triangles[face][corner % 3]]; };
-  const Vec3d a = position(f, at_c + 1), b = position(f, at_c + 2);
+  if (topology.is_border(edge)) return false;
+  const EdgeQuad q(topology, edge);
+  const Vec3d &a = positions[q.a], &b = positions[q.b];
   const Vec3d along = Normalized(b - a);
   const auto unfolded = [&](const Vec3d& p, double side) {
     const double x = Dot(p - a, along);
     return Vec2d{x, side * Norm(p - a - along * x)};
   };
-  const Vec2d flat_a{}, flat_b{Norm(b - a), 0.0}, flat_c = unfolded(position(f, at_c), 1.0), flat_d = unfolded(position(g, at_d), -1.0);
+  const Vec2d flat_a{}, flat_b{Norm(b - a), 0.0}, flat_c = unfolded(positions[q.c], 1.0), flat_d = unfolded(positions[q.d], -1.0);
   const double area_a = DoubledArea(flat_c, flat_a, flat_d), area_b = DoubledArea(flat_d, flat_b, flat_c);
   if (!(std::min(area_a, area_b) > kLeastShare * (area_a + area_b))) return false;
-  Move move{{f, g}, std::vector<Corners>(2), std::vector<Corners>(2)};
-  const auto set = [](int corner, const Vec2d& p, const Vec2d& q, const Vec2d& r, Corners* corners) {
-    (*corners)[corner] = p;
-    (*corners)[(corner + 1) % 3] = q;
-    (*corners)[(corner + 2) % 3] = r;
+  Move move{{q.f, q.g}, std::vector<Corners>(2), std::vector<Corners>(2)};
+  const auto set = [](int corner, const Vec2d& first, const Vec2d& second, const Vec2d& third, Corners* corners) {
+    (*corners)[corner] = first;
+    (*corners)[(corner + 1) % 3] = second;
+    (*corners)[(corner + 2) % 3] = third;
   };
-  set(at_c, flat_c, flat_a, flat_b, &move.before[0]);
-  set(at_d, flat_d, flat_b, flat_a, &move.before[1]);
-  set(at_c, flat_c, flat_a, flat_d, &move.after[0]);
-  set(at_d, flat_d, flat_b, flat_c, &move.after[1]);
+  set(q.at_c, flat_c, flat_a, flat_b, &move.before[0]);
+  set(q.at_d, flat_d, flat_b, flat_a, &move.before[1]);
+  set(q.at_c, flat_c, flat_a, flat_d, &move.after[0]);
+  set(q.at_d, flat_d, flat_b, flat_c, &move.after[1]);
   Append(std::move(move));
   return true;
 }
@@ -91,16 +89,8 @@ DomainPoint DomainMoves::Moved(const DomainPoint& point, const std::vector<uint3
   const Corners& t = from[static_cast<size_t>(std::find(faces.begin(), faces.end(), point.face) - faces.begin())];
   Vec2d place;
   for (size_t k = 0; k < 3; ++k) place = {place.x + point.barycentric[static_cast<int>(k)] * t[k].x, place.y + point.barycentric[static_cast<int>(k)] * t[k].y};
-  DomainPoint moved{faces[0], {1, 0, 0}};
-  double best = -std::numeric_limits<double>::max();
-  for (size_t i = 0; i < faces.size() && best < 0; ++i) {
-    const Vec3d weights = BarycentricIn(place, to[i][0], to[i][1], to[i][2]);
-    if (MinWeight(weights) <= best) continue;
-    best = MinWeight(weights);
-    moved = {faces[i], weights};
-  }
-  moved.barycentric = ClampWeights(moved.barycentric);
-  return moved;
+  const PlaceInTriangles found = FindInTriangles(place, static_cast<int>(faces.size()), [&](int i) { return to[static_cast<size_t>(i)]; });
+  return {faces[static_cast<size_t>(found.triangle)], found.weights};
 }
 
 DomainPoint DomainMoves::Forward(DomainPoint point) const {

@@ -3,6 +3,7 @@
 #define LACERTA_REMESH_FAN_CHART_H_
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -59,17 +60,19 @@ std::vector<Vec2d> FlattenFan(const Vec3d& center, const Fan& fan, const std::ve
 // degrees at most, which it does at a vertex in the plane of its ring but outside of it.
 bool IsStarShaped(const std::vector<Vec2d>& chart, size_t num_faces);
 
-// The face of a fan around `center` in which a point of its chart lies, of the first num_faces between ring[i] and ring[i + 1] (the last may end at ring[0]), and its weights
-// there: of the center, then of these. By rounding in none, it is the one that it is least far out of.
-struct PlaceInFan {
-  int face = 0;
+// The triangle of a chart in which a point lies, of those numbered up to `count` with the corners corners(i), and its weights there. By rounding in none, it is the one that it is
+// least far out of.
+struct PlaceInTriangles {
+  int triangle = 0;
   Vec3d weights{1, 0, 0};
 };
-inline PlaceInFan FindInFan(const Vec2d& point, const Vec2d& center, const Vec2d* ring, int size, int num_faces) {
-  PlaceInFan place;
+template <typename Corners>
+PlaceInTriangles FindInTriangles(const Vec2d& point, int count, const Corners& corners) {
+  PlaceInTriangles place;
   double best = -std::numeric_limits<double>::max();
-  for (int i = 0; i < num_faces && best < 0; ++i) {
-    const Vec3d weights = BarycentricIn(point, center, ring[i], ring[(i + 1) % size]);
+  for (int i = 0; i < count && best < 0; ++i) {
+    const std::array<Vec2d, 3> triangle = corners(i);
+    const Vec3d weights = BarycentricIn(point, triangle[0], triangle[1], triangle[2]);
     if (MinWeight(weights) <= best) continue;
     best = MinWeight(weights);
     place = {i, weights};

@@ -1,14 +1,6 @@
 #include "remesh/growing_normal_mesh.h"
 
 namespace lacerta {
-namespace {
-
-Vec3f NormalOf(const InputSurface& surface, const BaseDomain& domain, uint32_t v) {
-  const DomainPoint& slid_to = domain.slid_to(v);
-  return slid_to.face != kNone ? surface.NormalAt(slid_to.face, slid_to.barycentric) : surface.vertex_normal(domain.input_vertex(v));
-}
-
-}  // namespace
 
 GrowingNormalMesh::GrowingNormalMesh(const InputSurface& surface, const BaseDomain& domain, const std::vector<Vec3f>& base_positions,
                                      const PiercingOptions& options)
@@ -19,7 +11,7 @@ GrowingNormalMesh::GrowingNormalMesh(const InputSurface& surface, const BaseDoma
       const uint32_t v = domain.triangles()[f][k];
       DomainPoint corner{f, {}};
       corner.barycentric[k] = 1;
-      sites_[v] = {base_positions[v], NormalOf(surface, domain, v), corner, PiercingKind::kNormal, 0};
+      sites_[v] = {base_positions[v], NormalAtBase(surface, domain, v), corner, PiercingKind::kNormal, 0};
     }
   }
   for (const Site& site : sites_) mesh_.surface_normals.push_back(site.normal);

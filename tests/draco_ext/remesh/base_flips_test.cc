@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "draco_ext/remesh/decimated_input.h"
 #include "draco_ext/remesh/remeshing.h"
 #include "remesh/base_midpoints.h"
 #include "remesh/growing_normal_mesh.h"
@@ -18,21 +19,14 @@ namespace lacerta {
 namespace {
 
 using lacerta::testing::BasePositions;
-using lacerta::testing::Decimated;
 using lacerta::testing::PositionOf;
 using lacerta::testing::RandomPointOn;
-using lacerta::testing::TopologyOf;
 
 // A base of so many vertices, and with edges turned.
-struct Flipped {
+struct Flipped : testing::DecimatedInput {
   Flipped(const TriangleMesh& input, uint32_t num_vertices)
-      : mesh(input), topology(TopologyOf(mesh)), surface(mesh, topology), history(Decimated(mesh, {num_vertices, 12, 0.2})), before(history, history.num_collapses()),
-        after(before), positions(BasePositions(before, mesh)), num_turned(FlipBaseEdges(surface, &after, positions)) {}
+      : DecimatedInput(input, num_vertices), before(Domain()), after(before), positions(BasePositions(before, mesh)), num_turned(FlipBaseEdges(surface, &after, positions)) {}
 
-  const TriangleMesh mesh;
-  const Topology topology;
-  const InputSurface surface;
-  const CollapseHistory history;
   const BaseDomain before;
   BaseDomain after;
   const std::vector<Vec3f> positions;

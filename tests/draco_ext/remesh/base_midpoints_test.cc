@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/butterfly.h"
+#include "draco_ext/remesh/decimated_input.h"
 #include "draco_ext/remesh/remeshing.h"
 #include "shapes/shapes.h"
 
@@ -14,7 +15,6 @@ namespace lacerta {
 namespace {
 
 using lacerta::testing::BasePositions;
-using lacerta::testing::Decimated;
 using lacerta::testing::TopologyOf;
 
 TEST(MidpointsOver, PredictsAsTheButterflyDoesLevelByLevel) {
@@ -55,13 +55,9 @@ TEST(MidpointsOver, NamesTheBaseFacesAndWeighsLevels) {
   for (const size_t count : on_face) EXPECT_EQ(count, 3u + 6u + 3u);  // its edges, their halves and those within
 }
 
-struct OnSphere {
-  OnSphere() : mesh(shapes::Icosphere(4)), topology(TopologyOf(mesh)), surface(mesh, topology), history(Decimated(mesh, {60, 12, 0.2})), domain(history, history.num_collapses()) {}
+struct OnSphere : testing::DecimatedInput {
+  OnSphere() : DecimatedInput(shapes::Icosphere(4), 60), domain(Domain()) {}
 
-  const TriangleMesh mesh;
-  const Topology topology;
-  const InputSurface surface;
-  const CollapseHistory history;
   const BaseDomain domain;
 };
 

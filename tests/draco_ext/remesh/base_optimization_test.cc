@@ -5,29 +5,21 @@
 #include <algorithm>
 #include <vector>
 
+#include "draco_ext/remesh/decimated_input.h"
 #include "draco_ext/remesh/remeshing.h"
-#include "remesh/growing_normal_mesh.h"
-#include "remesh/reversal.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
 namespace {
 
 using lacerta::testing::BasePositions;
-using lacerta::testing::Decimated;
-using lacerta::testing::TopologyOf;
 
-struct Optimized {
+struct Optimized : testing::DecimatedInput {
   Optimized(const TriangleMesh& input, uint32_t num_vertices)
-      : mesh(input), topology(TopologyOf(mesh)), surface(mesh, topology), history(Decimated(mesh, {num_vertices, 12, 0.2})), domain(history, history.num_collapses()),
-        first_triangles(domain.triangles()), start(BasePositions(domain, mesh)), positions(start) {
+      : DecimatedInput(input, num_vertices), domain(Domain()), first_triangles(domain.triangles()), start(BasePositions(domain, mesh)), positions(start) {
     OptimizeBase(surface, &domain, &positions);
   }
 
-  const TriangleMesh mesh;
-  const Topology topology;
-  const InputSurface surface;
-  const CollapseHistory history;
   BaseDomain domain;
   const std::vector<Triangle> first_triangles;
   const std::vector<Vec3f> start;
@@ -46,15 +38,7 @@ TEST(OptimizeBase, VerticesMoveAndEdgesTurn) {
 TEST(OptimizeBase, WhatIsPiercedStandsWhereTheDomainSays) {
   for (const TriangleMesh& input : {shapes::BumpySphere(4), shapes::Torus(64, 32), shapes::GridWithBorder(40, 40, 0.3f)}) {
     const Optimized base(input, 60);
-    GrowingNormalMesh growing(base.surface, base.domain, base.positions, PiercingOptions());
-    for (int level = 0; level < 3; ++level) growing.AddLevel();
-    const double diagonal = BoundingBoxDiagonal(input);
-    const std::vector<DomainPoint> parameters = growing.Parameters();
-    for (size_t v = 0; v < parameters.size(); ++v) {
-      const DomainPoint on_input = base.domain.ToInput(parameters[v]);
-      EXPECT_LT(Norm(base.surface.PositionAt(on_input.face, on_input.barycentric) - growing.mesh().mesh.positions[v]), 1e-5 * diagonal) << v;
-    }
-    EXPECT_LT(FindReversed(base.surface, growing.mesh()).share, 0.002);
+    testing::ExpectPiercedWhereTheDomainSays(base.surface, base.domain, base.positions);
   }
 }
 

@@ -8,32 +8,24 @@
 #include <vector>
 
 #include "common/butterfly.h"
+#include "draco_ext/remesh/decimated_input.h"
 #include "draco_ext/remesh/remeshing.h"
 #include "remesh/growing_normal_mesh.h"
-#include "remesh/reversal.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
 namespace {
 
-using lacerta::testing::Decimated;
-using lacerta::testing::TopologyOf;
-
 // A base of so many vertices, slid or not, and what is pierced over it.
-struct Slid {
+struct Slid : testing::DecimatedInput {
   Slid(const TriangleMesh& input, uint32_t num_vertices, bool slides)
-      : mesh(input), topology(TopologyOf(mesh)), surface(mesh, topology), history(Decimated(mesh, {num_vertices, 12, 0.2})), domain(history, history.num_collapses()),
-        start(domain.PositionsOn(mesh)), positions(start) {
+      : DecimatedInput(input, num_vertices), domain(Domain()), start(domain.PositionsOn(mesh)), positions(start) {
     if (slides) SlideBase(surface, &domain, &positions, 10'000);
   }
   size_t NumMoved() const {
     return static_cast<size_t>(std::count_if(positions.begin(), positions.end(), [&](const Vec3f& p) { return p != start[static_cast<size_t>(&p - positions.data())]; }));
   }
 
-  const TriangleMesh mesh;
-  const Topology topology;
-  const InputSurface surface;
-  const CollapseHistory history;
   BaseDomain domain;
   const std::vector<Vec3f> start;
   std::vector<Vec3f> positions;
@@ -71,15 +63,7 @@ TEST(SlideBase, LeavesLessToCode) {
 TEST(SlideBase, WhatIsPiercedStandsWhereTheDomainSays) {
   for (const TriangleMesh& input : {shapes::BumpySphere(4), shapes::Torus(64, 32), shapes::GridWithBorder(40, 40, 0.3f)}) {
     const Slid slid(input, 50, true);
-    GrowingNormalMesh growing(slid.surface, slid.domain, slid.positions, PiercingOptions());
-    for (int level = 0; level < 3; ++level) growing.AddLevel();
-    const double diagonal = BoundingBoxDiagonal(input);
-    const std::vector<DomainPoint> parameters = growing.Parameters();
-    for (size_t v = 0; v < parameters.size(); ++v) {
-      const DomainPoint on_input = slid.domain.ToInput(parameters[v]);
-      EXPECT_LT(Norm(slid.surface.PositionAt(on_input.face, on_input.barycentric) - growing.mesh().mesh.positions[v]), 1e-5 * diagonal) << v;
-    }
-    EXPECT_LT(FindReversed(slid.surface, growing.mesh()).share, 0.002);
+    testing::ExpectPiercedWhereTheDomainSays(slid.surface, slid.domain, slid.positions);
   }
 }
 
