@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "draco/decoded_distance.h"
-#include "draco/pierced_base.h"
 #include "lacerta/decoder.h"
 #include "remesh/surface_fit.h"
 
@@ -47,19 +46,21 @@ bool IsBelow(double psnr, const NormalMesh& remesh, const SurfaceDistanceMeter& 
 }  // namespace
 
 StatusOr<FittedRemesh> RemeshForPsnr(const RefinableSurface& surface, uint32_t num_base_vertices, double psnr, BaseCoding coding,
-                                     const SurfaceDistanceMeter& meter) {
+                                     const SurfaceDistanceMeter& meter, std::unique_ptr<PiercedBase> begun) {
   constexpr double kMostGain = 6;  // dB that the fit brings
   const double num_input = static_cast<double>(surface.surface.mesh().positions.size());
-  std::unique_ptr<PiercedBase> pierced;
-  for (int levels = FirstLevels(num_base_vertices, num_input);; ++levels) {
+  std::unique_ptr<PiercedBase> pierced = std::move(begun);
+  for (int levels = pierced ? pierced->num_levels() + 1 : FirstLevels(num_base_vertices, num_input);; ++levels) {
     LACERTA_ASSIGN_OR_RETURN(pierced, PierceUnreversed(surface, num_base_vertices, levels, coding, std::move(pierced)));
     const bool may_grow = 4 * static_cast<double>(pierced->refined().mesh.positions.size()) <= MostVertices(num_input);
     if (may_grow && IsBelow(psnr - kMostGain, pierced->Remesh(), meter)) continue;  // fitted or not
-    FittedRemesh result{pierced->base(), pierced->Remesh(), 0, may_grow};
+    FittedRemesh result{pierced->base(), pierced->Remesh(), 0, nullptr};
     if (!may_grow) pierced.reset();  // as large as what comes now
     FitToInput(surface.surface, SurfaceFitOptions(), &result.mesh);
     result.psnr = PsnrOf(result.mesh, meter, kRoughSamples);
-    if (!may_grow || result.psnr > psnr) return result;
+    if (may_grow && result.psnr <= psnr) continue;
+    result.pierced = std::move(pierced);
+    return result;
   }
 }
 

@@ -38,6 +38,7 @@ class PiercedBase {
   const BaseDomain& domain() const { return domain_; }
   uint32_t num_vertices() const { return static_cast<uint32_t>(base_.vertex_map.size()); }  // those of the still part too
   const std::vector<uint32_t>& held() const { return held_; }
+  int num_levels() const { return pierced_.num_levels(); }
 
  private:
   // domain: reordered as the base is.

@@ -33,7 +33,7 @@ struct TriedBase {
   std::unique_ptr<CandidateSearch> search;
   Status status;  // why there is no candidate, if so
   double remesh_psnr = 0;
-  bool may_grow = false;  // as of FittedRemesh
+  std::unique_ptr<PiercedBase> pierced;  // as of FittedRemesh
   double score = std::numeric_limits<double>::infinity();  // of CandidateSearch::Score; infinite: cannot reach the target
   SearchStart start;                                       // of CandidateSearch::start, where there is a score
 };
@@ -113,12 +113,14 @@ class Ladder {
   // Takes a base of FindBest, with all its levels, to the target. Several may be in parallel; afterwards it is let go of.
   StatusOr<ChosenStream> Meet(int rung) {
     TriedBase& base = tried_.at(rung);
-    if (!base.candidate || (base.may_grow && base.remesh_psnr < TypicalPsnr(target_, num_input_) + kComfort)) {
-      LetGo(&base);
+    if (!base.candidate || (base.pierced && base.remesh_psnr < TypicalPsnr(target_, num_input_) + kComfort)) {
+      base.search.reset();
+      base.candidate.reset();
       LACERTA_RETURN_IF_ERROR(Remesh(rung, kComfort, &base));
       MakeCandidate(&base);
       if (std::isfinite(base.score)) base.search->BeginAt(base.start);
     }
+    base.pierced.reset();  // as large as what comes now
     LACERTA_ASSIGN_OR_RETURN(MeasuredStream measured, base.search->Meet());
     ChosenStream chosen{std::move(measured), base.remesh_psnr, NormalShare(base.candidate->normal_mesh())};
     LetGo(&base);
@@ -169,6 +171,7 @@ class Ladder {
   static void LetGo(TriedBase* base) {
     base->search.reset();
     base->candidate.reset();
+    base->pierced.reset();
   }
 
   bool IsOnLadder(int rung) const { return rung >= first_ && rung <= last_; }
@@ -228,8 +231,10 @@ class Ladder {
       const auto made = made_.extract(r);
       visited.push_back({r, true, made.empty() ? TriedBase() : std::move(made.mapped())});
     }
+    // Beside a base that is only to be scored they would be waited for.
+    const bool is_making = std::any_of(visited.begin(), visited.end(), [](const Visited& v) { return !v.base.remesh; });
     for (const int r : likely) {
-      if (IsMissing(r) && made_.count(r) == 0 && AreInParallel(num_input_)) visited.push_back({r, false, TriedBase()});
+      if (is_making && IsMissing(r) && made_.count(r) == 0 && AreInParallel(num_input_)) visited.push_back({r, false, TriedBase()});
     }
     const double comfort = effort_.enough_bases == 1 ? kComfort : kLittleComfort;  // a single one is taken to the target anyway
     ForEachCandidate(num_input_, visited.size(), [&](size_t i) {
@@ -242,13 +247,13 @@ class Ladder {
 
   Status Remesh(int rung, double comfort, TriedBase* base) const {
     const double psnr = TypicalPsnr(target_, num_input_) + comfort;
-    LACERTA_ASSIGN_OR_RETURN(base->remesh, RemeshForPsnr(surface_, RungSize(rung), psnr, target_.base_coding, meter_));
+    LACERTA_ASSIGN_OR_RETURN(base->remesh, RemeshForPsnr(surface_, RungSize(rung), psnr, target_.base_coding, meter_, std::move(base->pierced)));
     return Status();
   }
 
   void MakeCandidate(TriedBase* base) const {
     base->remesh_psnr = base->remesh->psnr;
-    base->may_grow = base->remesh->may_grow;
+    base->pierced = std::move(base->remesh->pierced);
     base->candidate = std::make_unique<NormalMeshCandidate>(std::move(base->remesh->base), std::move(base->remesh->mesh));
     base->remesh.reset();
     base->search = std::make_unique<CandidateSearch>(*base->candidate, base->remesh_psnr, meter_, target_, mode_, effort_);

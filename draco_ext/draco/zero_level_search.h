@@ -61,7 +61,7 @@ class SimplerStream {
  private:
   bool IsHopeless(double bytes);           // for a simplified mesh at the PSNR to take fewer than so many
   StatusOr<bool> Find(double most_bytes);  // false: hopeless
-  // Sets stream_ where there is none and one may beat a stream with levels of so many bytes.
+  // Sets stream_ where there is none and one may take fewer than so many bytes.
   Status Look(double most_bytes);
 
   const TriangleMesh& mesh_;
