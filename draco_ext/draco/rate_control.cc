@@ -28,7 +28,6 @@ constexpr double kUsualSize = 48;  // that every surface may have and where none
 
 // A base that was tried.
 struct TriedBase {
-  std::optional<FittedRemesh> remesh;              // until there is the candidate
   std::unique_ptr<NormalMeshCandidate> candidate;  // null once it was let go of
   std::unique_ptr<CandidateSearch> search;
   Status status;  // why there is no candidate, if so
@@ -66,29 +65,27 @@ class Ladder {
     last_ = std::max(first_, RungOfSize(std::max(kUsualSize, kLargestShare * num_input_)));
   }
 
-  // Scores the rungs around the usual one and goes on until one on either side of the best is known to be much worse, or two to be
+  // Scores the usual rung and the next and goes on until one on either side of the best is known to be much worse, or two to be
   // worse: one alone may be a fluke of its base. Fails where the rival, if there is one, outdoes it on the way.
   StatusOr<BestBases> FindBest(const std::function<void(double, const char*)>& progress, const RivalStream* rival) {
     const auto is_outdone = [&](double bytes) { return rival != nullptr && rival->takes_fewer_than(bytes); };
     const int first = UsualRung();
     if (is_outdone(LeastBytesFrom(std::max(first - kStride, first_)))) return Outdone();
-    Visit(effort_.enough_bases == 1 ? std::vector<int>{first} : std::vector<int>{first - kStride, first, first + kStride}, {});
+    Visit(effort_.enough_bases == 1 ? std::vector<int>{first} : std::vector<int>{first, first + kStride});
     for (;;) {
       if (progress) progress(std::min(0.75, 0.1 + 0.08 * static_cast<double>(tried_.size())), "choosing the base mesh");
       const std::vector<int> ranking = Ranking();
       for (size_t i = effort_.at_a_time; i < ranking.size(); ++i) LetGo(&tried_[ranking[i]]);
       const int best = ranking.front();
       const bool is_scored = IsScored(best);
-      std::vector<int> likely;
-      const std::vector<int> next = NextRungs(best, &likely);
+      const std::vector<int> next = NextRungs(best);
       const bool is_enough = next.empty() || (tried_.size() >= effort_.enough_bases && is_scored);
       if (is_enough) {
-        made_.clear();
         LACERTA_ASSIGN_OR_RETURN(std::vector<int> bases, Promising(ranking));
         return BestBases{std::move(bases), target_.is_rate ? target_.bytes : std::exp(tried_[best].score)};
       }
       if (is_outdone(is_scored ? LeastShare(best) * std::exp(tried_.at(best).score) : LeastBytesFrom(HighestRung() + kStride))) return Outdone();
-      Visit(next, next.size() == 1 ? likely : std::vector<int>());
+      Visit(next);
     }
   }
 
@@ -96,7 +93,7 @@ class Ladder {
   std::vector<int> FindHalfway() {
     const int best = Ranking().front();
     const std::array<int, 2> halfway = {best - kStride / 2, best + kStride / 2};
-    Visit({halfway.begin(), halfway.end()}, {});
+    Visit({halfway.begin(), halfway.end()});
     const std::vector<int> ranking = Ranking();
     std::vector<int> result;
     for (const int r : ranking) {
@@ -117,7 +114,6 @@ class Ladder {
       base.search.reset();
       base.candidate.reset();
       LACERTA_RETURN_IF_ERROR(Remesh(rung, kComfort, &base));
-      MakeCandidate(&base);
       if (std::isfinite(base.score)) base.search->BeginAt(base.start);
     }
     base.pierced.reset();  // as large as what comes now
@@ -180,9 +176,9 @@ class Ladder {
   bool IsScored(int rung) const { return std::isfinite(tried_.at(rung).score); }
   int HighestRung() const { return tried_.rbegin()->first; }
 
-  // What to visit next; nothing where enough is known. likely: due after that, unless it turns out to be much worse than the best.
-  std::vector<int> NextRungs(int best, std::vector<int>* likely) const {
-    if (IsScored(best)) return Beside(best, likely);
+  // What to visit next; nothing where enough is known.
+  std::vector<int> NextRungs(int best) const {
+    if (IsScored(best)) return Beside(best);
     const int highest = HighestRung();  // nothing reaches the target yet: larger bases
     return highest < last_ ? std::vector<int>{highest + kStride, highest + 2 * kStride} : std::vector<int>();
   }
@@ -191,13 +187,12 @@ class Ladder {
   bool IsFarOff(int rung) const { return tried_.at(rung).remesh_psnr < TypicalPsnr(target_, num_input_) + kLittleComfort; }
 
   // Rungs on either side of the best.
-  std::vector<int> Beside(int best, std::vector<int>* likely) const {
+  std::vector<int> Beside(int best) const {
     std::vector<int> result;
     for (const int side : {-kStride, kStride}) {
       const int neighbor = best + side, beyond = best + 2 * side;
       if (IsMissing(neighbor)) {
         result.push_back(neighbor);
-        likely->push_back(beyond);
       } else if (IsMissing(beyond) && tried_.count(neighbor) > 0 && (!IsWorse(neighbor, best, effort_.much_worse) || (side > 0 && IsFarOff(neighbor)))) {
         result.push_back(beyond);
       }
@@ -217,50 +212,30 @@ class Ladder {
     return start;
   }
 
-  // Makes and scores the given bases; those off the ladder are left out. A base that fails costs only itself. likely: to be visited later,
-  // made now where there are threads for it. What is found does not depend on it.
-  void Visit(const std::vector<int>& rungs, const std::vector<int>& likely) {
-    struct Visited {
-      int rung;
-      bool is_scored;
-      TriedBase base;
-    };
-    std::vector<Visited> visited;
-    for (const int r : rungs) {
-      if (!IsMissing(r)) continue;
-      const auto made = made_.extract(r);
-      visited.push_back({r, true, made.empty() ? TriedBase() : std::move(made.mapped())});
-    }
-    // Beside a base that is only to be scored they would be waited for.
-    const bool is_making = std::any_of(visited.begin(), visited.end(), [](const Visited& v) { return !v.base.remesh; });
-    for (const int r : likely) {
-      if (is_making && IsMissing(r) && made_.count(r) == 0 && AreInParallel(num_input_)) visited.push_back({r, false, TriedBase()});
-    }
+  // Makes and scores the given bases; those off the ladder and those that were tried are left out. A base that fails costs only itself.
+  void Visit(std::vector<int> rungs) {
+    rungs.erase(std::remove_if(rungs.begin(), rungs.end(), [&](int r) { return !IsMissing(r); }), rungs.end());
+    std::vector<TriedBase> visited(rungs.size());
     const double comfort = effort_.enough_bases == 1 ? kComfort : kLittleComfort;  // a single one is taken to the target anyway
-    ForEachCandidate(num_input_, visited.size(), [&](size_t i) {
-      TriedBase& base = visited[i].base;
-      if (!base.remesh && base.status.ok()) base.status = Remesh(visited[i].rung, comfort, &base);
-      if (visited[i].is_scored && base.status.ok()) base.status = Score(visited[i].rung, &base);
+    ForEachCandidate(num_input_, rungs.size(), [&](size_t i) {
+      visited[i].status = Remesh(rungs[i], comfort, &visited[i]);
+      if (visited[i].status.ok()) visited[i].status = Score(rungs[i], &visited[i]);
     });
-    for (Visited& v : visited) (v.is_scored ? tried_ : made_)[v.rung] = std::move(v.base);
+    for (size_t i = 0; i < rungs.size(); ++i) tried_[rungs[i]] = std::move(visited[i]);
   }
 
+  // Makes the candidate, with a search of its own.
   Status Remesh(int rung, double comfort, TriedBase* base) const {
     const double psnr = TypicalPsnr(target_, num_input_) + comfort;
-    LACERTA_ASSIGN_OR_RETURN(base->remesh, RemeshForPsnr(surface_, RungSize(rung), psnr, target_.base_coding, meter_, std::move(base->pierced)));
+    LACERTA_ASSIGN_OR_RETURN(FittedRemesh remesh, RemeshForPsnr(surface_, RungSize(rung), psnr, target_.base_coding, meter_, std::move(base->pierced)));
+    base->remesh_psnr = remesh.psnr;
+    base->pierced = std::move(remesh.pierced);
+    base->candidate = std::make_unique<NormalMeshCandidate>(std::move(remesh.base), std::move(remesh.mesh));
+    base->search = std::make_unique<CandidateSearch>(*base->candidate, base->remesh_psnr, meter_, target_, mode_, effort_);
     return Status();
   }
 
-  void MakeCandidate(TriedBase* base) const {
-    base->remesh_psnr = base->remesh->psnr;
-    base->pierced = std::move(base->remesh->pierced);
-    base->candidate = std::make_unique<NormalMeshCandidate>(std::move(base->remesh->base), std::move(base->remesh->mesh));
-    base->remesh.reset();
-    base->search = std::make_unique<CandidateSearch>(*base->candidate, base->remesh_psnr, meter_, target_, mode_, effort_);
-  }
-
   Status Score(int rung, TriedBase* base) const {
-    MakeCandidate(base);
     constexpr double kHeadroom = 0.5;  // dB that quantization takes at least
     if (const std::optional<SearchStart> start = StartOf(rung)) base->search->BeginAt(*start);
     if (!target_.is_rate && base->remesh_psnr < target_.psnr + kHeadroom) return Status();
@@ -302,7 +277,7 @@ class Ladder {
   const SearchEffort effort_;
   double num_input_;
   int first_, last_;  // rungs of the coarsest base that there is, and of the largest one worth trying
-  std::map<int, TriedBase> tried_, made_;  // by rung; made_: not yet scored
+  std::map<int, TriedBase> tried_;  // by rung
 };
 
 }  // namespace
