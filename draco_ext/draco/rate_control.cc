@@ -134,9 +134,10 @@ class Ladder {
     return std::max(0, kStride * static_cast<int>(std::lround(std::log(size / kFirstRung) / std::log(kStrideRatio))));
   }
 
-  // Where streams of that quality usually have their base: the smallest that is near enough to the surface by itself.
+  // Where streams of that quality usually have their base: the smallest that is near enough to the surface by itself and has little of it askew.
   int UsualRung() const {
-    const double enough = UsualBasePsnr(TypicalPsnr(target_, num_input_));
+    constexpr int kMostLarger = 3 * kStride;  // noise is askew to any base
+    const double psnr = TypicalPsnr(target_, num_input_), enough = UsualBasePsnr(psnr), most_askew = UsualAskewShare(psnr);
     int low = std::clamp(RungOfSize(kUsualSize), first_, last_), high = last_;
     while (low < high) {
       const int middle = low + (high - low) / (2 * kStride) * kStride;
@@ -146,7 +147,9 @@ class Ladder {
         low = middle + kStride;
       }
     }
-    return low;
+    int rung = low;
+    while (rung < std::min(last_, low + kMostLarger) && AskewShare(surface_, RungSize(rung)) > most_askew) rung += kStride;
+    return rung;
   }
 
   // Of streams with a base of that rung or a larger one. Vertices of bases usually take three bytes and more.

@@ -22,6 +22,7 @@ struct Simplified {
         still(std::move(beside)),
         meter(SurfaceDistanceMeter::Create(Together(mesh, still)).value()) {}
   double PsnrAt(uint32_t num_vertices) const { return BasePsnr({surface, history, still}, num_vertices, meter); }
+  double AskewAt(uint32_t num_vertices) const { return AskewShare({surface, history, still}, num_vertices); }
 
   TriangleMesh mesh;
   InputSurface surface;
@@ -58,6 +59,26 @@ TEST(BasePsnrTest, WhatStandsStillIsThere) {
   const Simplified alone(shapes::Icosphere(4)), accompanied(shapes::Icosphere(4), testing::Moved(shapes::Icosphere(1), {5, 0, 0}));
   EXPECT_GT(accompanied.PsnrAt(160), alone.PsnrAt(160));  // as near, of a larger whole
   EXPECT_LT(accompanied.PsnrAt(160), alone.PsnrAt(160) + 14);
+}
+
+TEST(AskewShareTest, SmoothSurfacesHaveNoneAndLimbsTheirSides) {
+  const Simplified sphere(shapes::Icosphere(4)), spiky(shapes::SpikySphere(4));
+  EXPECT_EQ(sphere.AskewAt(40), 0);
+  const double coarse = spiky.AskewAt(30), fine = spiky.AskewAt(600);
+  EXPECT_GT(coarse, 0.02);
+  EXPECT_LT(coarse, 0.6);
+  EXPECT_LT(fine, 0.5 * coarse);
+}
+
+TEST(AskewShareTest, NothingIsAskewToItself) {
+  const Simplified rough(shapes::BumpySphere(3, 0.0f, 0.02f)), spiky(shapes::SpikySphere(3));
+  for (const Simplified* shape : {&rough, &spiky}) EXPECT_LT(shape->AskewAt(static_cast<uint32_t>(shape->mesh.positions.size())), 1e-3);
+}
+
+TEST(UsualAskewShareTest, FallsAsStreamsGetBetter) {
+  EXPECT_LT(UsualAskewShare(80), 0.6 * UsualAskewShare(70));
+  EXPECT_GT(UsualAskewShare(80), 0.1 * UsualAskewShare(70));
+  EXPECT_LT(UsualAskewShare(60), 0.1);
 }
 
 TEST(UsualBasePsnrTest, GrowsLessThanTheStreams) {
