@@ -205,6 +205,21 @@ TEST(CodeAtTargetTest, TheWalkOverBasesEndsWhereTheBestCanHardlyGetAsSmallAsTheR
   EXPECT_TRUE(near.Code(coder, psnr, Effort::kNormal).ok());
 }
 
+TEST(CodeAtTargetTest, ForeseesWhatAStreamNearToItsRemeshTakes) {
+  const struct {
+    TriangleMesh mesh;
+    double psnr;
+  } near[] = {{shapes::BumpySphere(3, 0.2f), 69}, {shapes::BumpySphere(4, 0.2f, 0.003f), 81}, {shapes::BumpySphere(4, 0.2f, 0.01f), 81}};
+  for (const auto& [mesh, psnr] : near) {
+    const Coder coder(mesh);
+    NotingRival rival{1e9};
+    const ChosenStream chosen = rival.Code(coder, {false, 0, psnr}).value();
+    EXPECT_LT(chosen.remesh_psnr, psnr + 3);
+    const auto size = static_cast<double>(chosen.measured.stream.size());
+    EXPECT_NEAR(rival.prepared.front(), size, 0.12 * size) << psnr << " dB";
+  }
+}
+
 TEST(CodeAtTargetTest, ARivalIsOnlyPreparedAtARate) {
   const Coder coder(shapes::BumpySphere(4, 0.2f, 0.003f));
   NotingRival rival{0};
