@@ -24,7 +24,7 @@ class FittedRemeshTest : public ::testing::Test {
   const TriangleMesh mesh_ = shapes::BumpySphere(5, 0.0f, 0.02f);
   const InputSurface surface_{mesh_, testing::TopologyOf(mesh_)};
   const CollapseHistory history_ = testing::Decimated(mesh_);
-  const TriangleMesh still_;
+  const TriangleMesh still_{};
   const SurfaceDistanceMeter meter_ = SurfaceDistanceMeter::Create(mesh_).value();
 };
 
