@@ -28,6 +28,8 @@ constexpr double kBytesSlack = 0.018;
 // What is aimed at lies inside of that, so that jumps of the curve hardly ever skip it.
 constexpr double kPsnrAim = 0.045, kBytesAim = 0.005;
 constexpr int kScoreTries = 2;
+// Near to what the remesh is off by bytes grow faster than extrapolation foresees: ln(bytes) for each dB less between the remesh and the target.
+constexpr double kEnoughHeadroom = 3.3, kLogBytesPerHeadroom = 0.12;
 constexpr int kMostDraws = 4, kSettlePasses = 2;  // passes: from a stream near the goal to one at it
 constexpr double kComparable = 0.7;  // dB from the goal: from farther off, extrapolation favors what hardly can reach it
 constexpr double kNearEnough = 0.4;  // dB: typical slopes will do
@@ -172,7 +174,8 @@ StatusOr<double> CandidateSearch::Score() {
     if (std::fabs(Miss(*nearest)) < kNearEnough) break;
   }
   start_.log_lambda = nearest->log_lambda + (Goal() - nearest->value) / TypicalSlope();
-  return Merit(*nearest);
+  const double headroom = target_.is_rate ? kEnoughHeadroom : remesh_psnr_ - target_.psnr;
+  return Merit(*nearest) + kLogBytesPerHeadroom * std::max(0.0, kEnoughHeadroom - headroom);
 }
 
 StatusOr<CandidateSearch::Attempt> CandidateSearch::TryNearGoal(int passes) {

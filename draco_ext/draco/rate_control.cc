@@ -45,15 +45,13 @@ constexpr double kComfort = 12, kLittleComfort = 6;
 // best so far, where neighbors on both sides are no better, where only larger bases are missing, and where smaller ones are.
 constexpr double kFewestBytesPerVertex = 1.8, kLeastShareAtEnd = 0.85, kLeastShareBetween = 0.8, kLeastShareOfLargest = 0.7, kLeastShare = 0.45;
 constexpr double kUsualShareAtEnd = 0.93;  // of the bytes of the best score (0.94 to 0.99 at the default, 0.86 to 0.99 at --effort fast)
-// Near to what the remesh is off by bytes grow faster than scores foresee: ln(bytes) for each dB less between the remesh and the target.
-constexpr double kEnoughHeadroom = 3.3, kLogBytesPerHeadroom = 0.12;
 // What a PSNR costs, about: ln(bytes) per dB.
 constexpr double kLogBytesPerDecibel = 0.11;
 
 // The most promising bases, best first; at least one.
 struct BestBases {
   std::vector<int> rungs;
-  double score;  // of the first, in bytes; infinite where no base reaches the target
+  double score;  // of the first, in bytes, or the target's; infinite where no base reaches the target
 };
 
 Status Outdone() { return Unsupported("a stream without levels is much smaller"); }
@@ -246,7 +244,6 @@ class Ladder {
     if (const std::optional<SearchStart> start = StartOf(rung)) base->search->BeginAt(*start);
     if (!target_.is_rate && base->remesh_psnr < target_.psnr + kHeadroom) return Status();
     LACERTA_ASSIGN_OR_RETURN(base->score, base->search->Score());
-    if (!target_.is_rate) base->score += kLogBytesPerHeadroom * std::max(0.0, kEnoughHeadroom - (base->remesh_psnr - target_.psnr));
     if (target_.quality_layers > 1) {  // a large base comes before all else: it costs prefixes what it saves at the end
       constexpr double kPrefixCost = 0.015;  // of ln(bytes), per rung
       base->score += ScoreOfShare(kPrefixCost * rung);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "draco/decoded_distance.h"
+#include "geometry/vertex_area_vectors.h"
 #include "remesh/base_domain.h"
 #include "remesh/base_parts.h"
 
@@ -32,13 +33,10 @@ double AskewShare(const RefinableSurface& surface, uint32_t num_vertices) {
   for (size_t f = 0; f < input.triangles.size(); f += stride) on_input.push_back({static_cast<uint32_t>(f), kCentroid});
   std::vector<DomainPoint> on_base = on_input;
   domain.FromInput(&on_base);
-  const auto doubled_area_normal = [](const std::vector<Vec3f>& positions, const Triangle& t) {
-    return Vec3Cast<double>(Cross(positions[t[1]] - positions[t[0]], positions[t[2]] - positions[t[0]]));
-  };
   double area = 0, askew = 0;
   for (size_t i = 0; i < on_input.size(); ++i) {
-    const double of_face = Norm(doubled_area_normal(input.positions, input.triangles[on_input[i].face]));
-    const Vec3d of_base = doubled_area_normal(base, domain.triangles()[on_base[i].face]);
+    const double of_face = Norm(AreaVector(input.positions, input.triangles[on_input[i].face]));
+    const Vec3d of_base = AreaVector(base, domain.triangles()[on_base[i].face]);
     area += of_face;
     if (Dot(of_base, Vec3Cast<double>(surface.surface.NormalAt(on_input[i].face, kCentroid))) < kCosine * Norm(of_base)) askew += of_face;
   }

@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "draco_ext/remesh/remeshing.h"
+#include "draco_ext/draco/simplified_input.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
@@ -18,14 +18,10 @@ constexpr uint32_t kBase = 40;
 class FittedRemeshTest : public ::testing::Test {
  protected:
   FittedRemesh At(double psnr, std::unique_ptr<PiercedBase> begun = nullptr) const {
-    return RemeshForPsnr({surface_, history_, still_}, kBase, psnr, BaseCoding::kStock, meter_, std::move(begun)).value();
+    return RemeshForPsnr(input_.Refinable(), kBase, psnr, BaseCoding::kStock, input_.meter, std::move(begun)).value();
   }
 
-  const TriangleMesh mesh_ = shapes::BumpySphere(5, 0.0f, 0.02f);
-  const InputSurface surface_{mesh_, testing::TopologyOf(mesh_)};
-  const CollapseHistory history_ = testing::Decimated(mesh_);
-  const TriangleMesh still_{};
-  const SurfaceDistanceMeter meter_ = SurfaceDistanceMeter::Create(mesh_).value();
+  const testing::SimplifiedInput input_{shapes::BumpySphere(5, 0.0f, 0.02f)};
 };
 
 TEST_F(FittedRemeshTest, HasTheLevelsThatThePsnrNeeds) {
@@ -51,7 +47,7 @@ TEST_F(FittedRemeshTest, EndsWhereThereAreManyTimesTheVerticesOfTheInput) {
   const FittedRemesh best = At(200);
   EXPECT_EQ(best.pierced, nullptr);
   EXPECT_LT(best.psnr, 200);
-  const double vertices = static_cast<double>(best.mesh.mesh.positions.size()), input = static_cast<double>(mesh_.positions.size());
+  const double vertices = static_cast<double>(best.mesh.mesh.positions.size()), input = static_cast<double>(input_.mesh.positions.size());
   EXPECT_GT(vertices, 4 * input);
   EXPECT_LE(vertices, 24 * input);
 }

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "draco/for_each_candidate.h"
-#include "draco_ext/remesh/remeshing.h"
+#include "draco_ext/draco/simplified_input.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
@@ -59,18 +59,10 @@ TEST(ResolveTargetTest, NamesTheValueThatMakesNoSense) {
   }
 }
 
-// Codes a mesh at a target; keeps what the search needs.
-struct Coder {
-  explicit Coder(const TriangleMesh& m)
-      : mesh(m), surface(mesh, testing::TopologyOf(mesh)), history(testing::Decimated(mesh)), meter(SurfaceDistanceMeter::Create(mesh).value()) {}
-  ChosenStream Code(const ResolvedTarget& target) const {
-    return CodeAtTarget({surface, history, {}}, meter, target, EncodeMode::kDefault, {}).value();
-  }
-
-  TriangleMesh mesh;
-  InputSurface surface;
-  CollapseHistory history;
-  SurfaceDistanceMeter meter;
+// Codes a mesh at a target.
+struct Coder : testing::SimplifiedInput {
+  using SimplifiedInput::SimplifiedInput;
+  ChosenStream Code(const ResolvedTarget& target) const { return CodeAtTarget(Refinable(), meter, target, EncodeMode::kDefault, {}).value(); }
 };
 
 TEST(CodeAtTargetTest, BasesGrowWithTheQualityAskedFor) {
@@ -112,7 +104,7 @@ TEST(CodeAtTargetTest, EffortTradesBaseSizesForBytes) {
     int rounds = 0;
     const auto progress = [&](double, const char* stage) { rounds += std::string(stage) == "choosing the base mesh"; };
     const ChosenStream chosen =
-        CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, {false, 0, 59}, EncodeMode::kDefault, progress, EffortOf(effort)).value();
+        CodeAtTarget(coder.Refinable(), coder.meter, {false, 0, 59}, EncodeMode::kDefault, progress, EffortOf(effort)).value();
     EXPECT_TRUE(chosen.measured.meets_target);
     return Outcome{static_cast<double>(chosen.measured.stream.size()), rounds};
   };
@@ -153,7 +145,7 @@ TEST(CodeAtTargetTest, ReportsStages) {
     EXPECT_STRNE(stage, "");
     shares.push_back(share);
   };
-  ASSERT_TRUE(CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, {false, 0, 50}, EncodeMode::kDefault, progress).ok());
+  ASSERT_TRUE(CodeAtTarget(coder.Refinable(), coder.meter, {false, 0, 50}, EncodeMode::kDefault, progress).ok());
   ASSERT_GE(shares.size(), 2u);
   for (size_t i = 0; i < shares.size(); ++i) {
     EXPECT_GE(shares[i], i == 0 ? 0.0 : shares[i - 1]);
@@ -173,7 +165,7 @@ struct NotingRival {
                                },
                                [&](double most) { return bytes < most; },
                                [&](double beside) { prepared.push_back(beside); }};
-    return CodeAtTarget({coder.surface, coder.history, {}}, coder.meter, target, EncodeMode::kDefault, {}, EffortOf(effort), &rival);
+    return CodeAtTarget(coder.Refinable(), coder.meter, target, EncodeMode::kDefault, {}, EffortOf(effort), &rival);
   }
 };
 

@@ -4,31 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <utility>
 
-#include "draco_ext/remesh/remeshing.h"
-#include "remesh/base_parts.h"
+#include "draco_ext/draco/simplified_input.h"
 #include "shapes/shapes.h"
 
 namespace lacerta {
 namespace {
 
-// A surface with bases, and what stands still beside it.
-struct Simplified {
-  explicit Simplified(const TriangleMesh& m, TriangleMesh beside = {})
-      : mesh(m),
-        surface(mesh, testing::TopologyOf(mesh)),
-        history(testing::Decimated(mesh)),
-        still(std::move(beside)),
-        meter(SurfaceDistanceMeter::Create(Together(mesh, still)).value()) {}
-  double PsnrAt(uint32_t num_vertices) const { return BasePsnr({surface, history, still}, num_vertices, meter); }
-  double AskewAt(uint32_t num_vertices) const { return AskewShare({surface, history, still}, num_vertices); }
-
-  TriangleMesh mesh;
-  InputSurface surface;
-  CollapseHistory history;
-  TriangleMesh still;
-  SurfaceDistanceMeter meter;
+struct Simplified : testing::SimplifiedInput {
+  using SimplifiedInput::SimplifiedInput;
+  double PsnrAt(uint32_t num_vertices) const { return BasePsnr(Refinable(), num_vertices, meter); }
+  double AskewAt(uint32_t num_vertices) const { return AskewShare(Refinable(), num_vertices); }
 };
 
 TEST(BasePsnrTest, FourTimesTheVerticesBringTwelveDecibels) {
