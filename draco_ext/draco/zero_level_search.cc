@@ -47,7 +47,9 @@ class ZeroLevelSearch {
   // Looks for the best number of triangles, from what earlier calls found. most_bytes: of a stream that there is at the PSNR; false
   // where it is hopeless to become smaller than that.
   StatusOr<bool> FindSize(double most_bytes) {
-    if (first_ == 0) Begin();
+    if (first_ == 0) first_ = FirstSize();
+    if (tried_.empty() && IsOutOfReach(most_bytes)) return false;
+    if (!simplified_) Begin();
     LACERTA_RETURN_IF_ERROR(Look(first_));
     const Trial& trial = tried_.at(first_);
     if (IsOver(kHopeless * most_bytes)) return false;
@@ -140,6 +142,14 @@ class ZeroLevelSearch {
     }
   };
 
+  // Whether the first size alone, before anything is fitted, tells that no stream takes fewer than so many bytes at a PSNR: those of 24 meshes at 55, 62, 70 and 76 dB took a byte for each
+  // of its triangles and more, but for one (0.94).
+  bool IsOutOfReach(double most_bytes) const {
+    constexpr double kFewestBytes = 1.0;
+    const bool may_be_regular = static_cast<double>(mesh_.triangles.size()) < kMostRegular * first_;
+    return !target_.is_rate && !may_be_regular && kFewestBytes * first_ >= most_bytes;
+  }
+
   // Whether the best size so far takes more than so many bytes at a PSNR.
   bool IsOver(double bytes) const {
     const Trial& best = tried_.at(best_);
@@ -218,7 +228,6 @@ class ZeroLevelSearch {
 
   void Begin() {
     constexpr double kLargest = 1.6;  // times the first size: the best one is hardly ever larger, and steps from above gain no more
-    first_ = FirstSize();
     constexpr double kMostStepped = 20'000;  // triangles: fits of more take long
     const double largest = std::min({kLargest * first_, static_cast<double>(mesh_.triangles.size()), kMostStepped});
     simplified_.emplace(sequence_, FittedSimplification::Options{static_cast<uint32_t>(largest), FewestSamples(mesh_), kMostSamples}, &fit_target_);

@@ -33,7 +33,7 @@ struct ReversedPart {
 ReversedPart FindReversed(const InputSurface& surface, const NormalMesh& remesh);
 
 // A remesh with a larger share reversed is worth another one, over a base that is finer there.
-inline constexpr double kMostReversed = 3e-4;
+inline constexpr double kMostReversed = 5e-4;
 // Remeshes in all, until no more than that is reversed.
 inline constexpr int kReversalRounds = 4;
 
