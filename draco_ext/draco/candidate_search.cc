@@ -1,14 +1,18 @@
 #include "draco/candidate_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "draco/decoded_distance.h"
+#include "draco/for_each_candidate.h"
 
 namespace lacerta {
 namespace {
@@ -66,18 +70,25 @@ double CandidateSearch::CodingPsnr(double psnr) const {
 
 double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogBytesPerLogLambda : kPsnrPerLogLambda; }
 
-StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, int passes, int quality_layers, const CodedSurface* from) {
+StatusOr<CandidateSearch::Attempt> CandidateSearch::Code(const StepChoice& steps, double log_lambda, int passes, int quality_layers, const CodedSurface* from) const {
   Attempt attempt;
   const double lambda = std::exp(log_lambda);
-  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({lambda, lambda * steps_.details, lambda * steps_.base, steps_.last_detailed, passes, quality_layers}, mode_, from));
+  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({lambda, lambda * steps.details, lambda * steps.base, steps.last_detailed, passes, quality_layers}, mode_, from));
   const double estimate = EstimatePsnr(attempt.stream);
-  if (!offset_) {
-    constexpr uint64_t kRoughSamples = 50'000;
-    offset_ = MeasurePsnr(attempt, kRoughSamples) - estimate;
-  }
-  attempt.psnr = estimate + *offset_;
+  attempt.psnr = estimate + offset_.value_or(0);
   attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : CodingPsnr(estimate);
   attempt.log_lambda = log_lambda;
+  return attempt;
+}
+
+StatusOr<CandidateSearch::Attempt> CandidateSearch::Try(double log_lambda, int passes, int quality_layers, const CodedSurface* from) {
+  LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Code(steps_, log_lambda, passes, quality_layers, from));
+  if (!offset_) {
+    constexpr uint64_t kRoughSamples = 50'000;
+    const double estimate = attempt.psnr;
+    attempt.psnr = MeasurePsnr(attempt, kRoughSamples);
+    offset_ = attempt.psnr - estimate;
+  }
   values_[log_lambda] = attempt.value;
   return attempt;
 }
@@ -178,43 +189,50 @@ StatusOr<double> CandidateSearch::Score() {
   return Merit(*nearest) + kLogBytesPerHeadroom * std::max(0.0, kEnoughHeadroom - headroom);
 }
 
-StatusOr<CandidateSearch::Attempt> CandidateSearch::TryNearGoal(int passes) {
-  LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(start_.log_lambda, passes, 1));
-  if (Miss(attempt) <= kComparable) return attempt;
-  LACERTA_ASSIGN_OR_RETURN(Attempt other, Try(start_.log_lambda + (Goal() - attempt.value) / TypicalSlope(), passes, 1));
-  return Miss(other) < Miss(attempt) ? std::move(other) : std::move(attempt);
+StatusOr<CandidateSearch::Attempt> CandidateSearch::NearGoal(StatusOr<Attempt> attempt, const StepChoice& steps) const {
+  if (!attempt.ok() || Miss(attempt.value()) <= kComparable) return attempt;
+  const double log_lambda = attempt.value().log_lambda + (Goal() - attempt.value().value) / TypicalSlope();
+  StatusOr<Attempt> other = Code(steps, log_lambda, effort_.suit_passes, 1);
+  return !other.ok() || Miss(other.value()) < Miss(attempt.value()) ? std::move(other) : std::move(attempt);
 }
 
 // The law of the steps holds for surfaces on the whole; what suits this one is found by trying, one choice after the other, around the
 // slope that the target is thought to need.
 void CandidateSearch::SuitSteps() {
   double least = std::numeric_limits<double>::infinity();
-  const auto improves = [&](const StepChoice& choice) {
-    if (choice.last_detailed < 1 || choice.last_detailed > candidate_.num_levels()) return false;
-    const StepChoice before = std::exchange(steps_, choice);
-    const StatusOr<Attempt> attempt = TryNearGoal(effort_.suit_passes);
-    if (attempt.ok() && Merit(attempt.value()) < least) {
-      least = Merit(attempt.value());
-      start_.log_lambda = attempt.value().log_lambda + (Goal() - attempt.value().value) / TypicalSlope();
-      return true;
-    }
-    steps_ = before;
-    return false;
+  const auto is_better = [&](const StepChoice& choice, const StatusOr<Attempt>& attempt) {
+    if (!attempt.ok() || !(Merit(attempt.value()) < least)) return false;
+    least = Merit(attempt.value());
+    start_.log_lambda = attempt.value().log_lambda + (Goal() - attempt.value().value) / TypicalSlope();
+    steps_ = choice;
+    return true;
   };
-  const auto climb = [&](const std::function<void(StepChoice*)>& up, const std::function<void(StepChoice*)>& down) {
-    for (const auto& move : {up, down}) {
-      const auto moved = [&] {
-        StepChoice choice = steps_;
-        move(&choice);
-        return choice;
-      };
-      if (!improves(moved())) continue;
-      while (improves(moved())) {
-      }
-      return;
+  const auto code = [&](const StepChoice& choice) -> StatusOr<Attempt> {
+    if (choice.last_detailed < 1 || choice.last_detailed > candidate_.num_levels()) return InvalidArgument("the candidate has no such level");
+    return NearGoal(Code(choice, start_.log_lambda, effort_.suit_passes, 1), choice);
+  };
+  using Move = std::function<void(StepChoice*)>;
+  const auto moved = [&](const Move& move) {
+    StepChoice choice = steps_;
+    move(&choice);
+    return choice;
+  };
+  const auto climb = [&](const Move& up, const Move& down) {
+    const std::array<StepChoice, 2> choices = {moved(up), moved(down)};
+    std::vector<StatusOr<Attempt>> attempts(choices.size(), InternalError("not tried"));
+    ForEachCandidate(static_cast<double>(candidate_.normal_mesh().mesh.positions.size()), choices.size(), [&](size_t i) { attempts[i] = code(choices[i]); });
+    const Move* move = nullptr;
+    if (is_better(choices[0], attempts[0])) {
+      move = &up;
+    } else if (is_better(choices[1], attempts[1])) {
+      move = &down;
+    }
+    for (bool goes_on = move != nullptr; goes_on;) {
+      const StepChoice choice = moved(*move);
+      goes_on = is_better(choice, code(choice));
     }
   };
-  improves(StepChoice(steps_));
+  is_better(StepChoice(steps_), NearGoal(Try(start_.log_lambda, effort_.suit_passes, 1), steps_));
   climb([](StepChoice* c) { ++c->last_detailed; }, [](StepChoice* c) { --c->last_detailed; });
   climb([](StepChoice* c) { c->base /= kStepChange; }, [](StepChoice* c) { c->base *= kStepChange; });
   climb([](StepChoice* c) { c->details *= kStepChange; }, [](StepChoice* c) { c->details /= kStepChange; });

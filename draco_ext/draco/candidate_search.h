@@ -70,7 +70,14 @@ class CandidateSearch {
     double psnr = 0;   // dB: estimated, or measured once it was
     double value = 0;  // as in values_
   };
+  // How the steps follow from the slope of the coefficients: the slopes that give them, as multiples of it.
+  struct StepChoice {
+    double details = 1, base = 1;
+    int last_detailed = 1;
+  };
   // passes: of the descent; from: as for NormalMeshCandidate::Code.
+  StatusOr<Attempt> Code(const StepChoice& steps, double log_lambda, int passes, int quality_layers, const CodedSurface* from = nullptr) const;
+  // With the steps as they are; the first attempt is measured.
   StatusOr<Attempt> Try(double log_lambda, int passes, int quality_layers, const CodedSurface* from = nullptr);
   double EstimatePsnr(const CodedStream& stream) const;
   double MeasurePsnr(const Attempt& attempt, uint64_t num_samples);
@@ -80,7 +87,8 @@ class CandidateSearch {
   double Miss(const Attempt& attempt) const;   // dB between it and the goal, >= 0
   double Merit(const Attempt& attempt) const;  // what Score returns, as one attempt lets think
   void LearnSlope(const Attempt& a, const Attempt& b);  // of the same surface at two values of lambda
-  StatusOr<Attempt> TryNearGoal(int passes);  // at the start, or nearer to the goal where that is far off
+  // An attempt of SuitSteps, or where it is far off the goal, one nearer to that.
+  StatusOr<Attempt> NearGoal(StatusOr<Attempt> attempt, const StepChoice& steps) const;
   void SuitSteps();
   StatusOr<Attempt> Draw();
   std::optional<CodedSurface> SettleFrom(const Attempt& drawn) const;
@@ -108,11 +116,6 @@ class CandidateSearch {
   SearchStart start_;
   std::map<double, double> values_;  // of the attempts so far, by ln(lambda): ln(bytes) at a rate, else CodingPsnr of the estimate
   std::optional<double> offset_;     // dB that a measure showed more than the estimate, which hardly depends on lambda
-  // How the steps follow from the slope of the coefficients: the slopes that give them, as multiples of it.
-  struct StepChoice {
-    double details = 1, base = 1;
-    int last_detailed = 1;
-  };
   StepChoice steps_;
   bool values_are_measured_ = false;  // dB, where estimates do not lead to the target
   int measurements_ = 0;
