@@ -207,10 +207,7 @@ void CandidateSearch::SuitSteps() {
     steps_ = choice;
     return true;
   };
-  const auto code = [&](const StepChoice& choice) -> StatusOr<Attempt> {
-    if (choice.last_detailed < 1 || choice.last_detailed > candidate_.num_levels()) return InvalidArgument("the candidate has no such level");
-    return NearGoal(Code(choice, start_.log_lambda, effort_.suit_passes, 1), choice);
-  };
+  const auto code = [&](const StepChoice& choice) { return NearGoal(Code(choice, start_.log_lambda, effort_.suit_passes, 1), choice); };
   using Move = std::function<void(StepChoice*)>;
   const auto moved = [&](const Move& move) {
     StepChoice choice = steps_;
@@ -233,7 +230,6 @@ void CandidateSearch::SuitSteps() {
     }
   };
   is_better(StepChoice(steps_), NearGoal(Try(start_.log_lambda, effort_.suit_passes, 1), steps_));
-  climb([](StepChoice* c) { ++c->last_detailed; }, [](StepChoice* c) { --c->last_detailed; });
   climb([](StepChoice* c) { c->base /= kStepChange; }, [](StepChoice* c) { c->base *= kStepChange; });
   climb([](StepChoice* c) { c->details *= kStepChange; }, [](StepChoice* c) { c->details /= kStepChange; });
 }
