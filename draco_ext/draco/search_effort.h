@@ -16,7 +16,7 @@ struct SearchEffort {
   size_t enough_bases = 100;   // after so many the best is taken, worse neighbors on either side or not; 1: the usual size, where it can do
   size_t at_a_time = 2;        // of those, taken to the target together: the best of them is kept
   // Passes of the descent: scores compare candidates, which a few tell; the stream that is kept is worth more.
-  int score_passes = 2, meet_passes = 6;
+  int score_passes = 2, meet_passes = 8;
   int suit_passes = 3;  // where steps are suited to the surface; 0: they are not
   int draws = 3;        // codings at the target: slopes that hardly differ give streams that differ by a percent, of which the best goes on
   double zero_level_tries = 1.0;  // share of the usual ones, at the end of the search for a stream without levels
