@@ -11,7 +11,7 @@ namespace lacerta {
 struct SearchEffort {
   // Shares of the bytes: neighbors that are worse by that end the walk over base sizes; candidates that are worse by that than the best are not
   // taken to the target beside it.
-  double much_worse = 0, hopeless = 0.015;
+  double much_worse = 0.04, hopeless = 0.015;
   bool every_size = false;     // sizes halfway between those of the walk are tried, too, beside the best
   size_t enough_bases = 100;   // after so many the best is taken, worse neighbors on either side or not; 1: the usual size, where it can do
   size_t at_a_time = 2;        // of those, taken to the target together: the best of them is kept
@@ -33,10 +33,7 @@ inline SearchEffort EffortOf(Effort effort) {
     result.draws = 1;
     result.zero_level_tries = 0.25;
   }
-  if (effort == Effort::kBest) {  // what kNormal finds is among what this finds
-    result.much_worse = 0.06;
-    result.every_size = true;
-  }
+  if (effort == Effort::kBest) result.every_size = true;  // what kNormal finds is among what this finds
   return result;
 }
 
