@@ -200,7 +200,7 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::NearGoal(StatusOr<Attempt> a
 // slope that the target is thought to need.
 void CandidateSearch::SuitSteps() {
   double least = std::numeric_limits<double>::infinity();
-  const auto is_better = [&](const StepChoice& choice, const StatusOr<Attempt>& attempt) {
+  const auto keep_if_better = [&](const StepChoice& choice, const StatusOr<Attempt>& attempt) {
     if (!attempt.ok() || !(Merit(attempt.value()) < least)) return false;
     least = Merit(attempt.value());
     start_.log_lambda = attempt.value().log_lambda + (Goal() - attempt.value().value) / TypicalSlope();
@@ -219,17 +219,16 @@ void CandidateSearch::SuitSteps() {
     std::vector<StatusOr<Attempt>> attempts(choices.size(), InternalError("not tried"));
     ForEachCandidate(static_cast<double>(candidate_.normal_mesh().mesh.positions.size()), choices.size(), [&](size_t i) { attempts[i] = code(choices[i]); });
     const Move* move = nullptr;
-    if (is_better(choices[0], attempts[0])) {
+    if (keep_if_better(choices[0], attempts[0])) {
       move = &up;
-    } else if (is_better(choices[1], attempts[1])) {
+    } else if (keep_if_better(choices[1], attempts[1])) {
       move = &down;
     }
-    for (bool goes_on = move != nullptr; goes_on;) {
-      const StepChoice choice = moved(*move);
-      goes_on = is_better(choice, code(choice));
+    if (move == nullptr) return;
+    for (StepChoice next = moved(*move); keep_if_better(next, code(next)); next = moved(*move)) {
     }
   };
-  is_better(StepChoice(steps_), NearGoal(Try(start_.log_lambda, effort_.suit_passes, 1), steps_));
+  keep_if_better(StepChoice(steps_), NearGoal(Try(start_.log_lambda, effort_.suit_passes, 1), steps_));
   climb([](StepChoice* c) { c->base /= kStepChange; }, [](StepChoice* c) { c->base *= kStepChange; });
   climb([](StepChoice* c) { c->details *= kStepChange; }, [](StepChoice* c) { c->details /= kStepChange; });
 }
