@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -208,29 +207,30 @@ void CandidateSearch::SuitSteps() {
     return true;
   };
   const auto code = [&](const StepChoice& choice) { return NearGoal(Code(choice, start_.log_lambda, effort_.suit_passes, 1), choice); };
-  using Move = std::function<void(StepChoice*)>;
-  const auto moved = [&](const Move& move) {
+  const auto changed = [&](double StepChoice::*slope, bool is_finer) {
     StepChoice choice = steps_;
-    move(&choice);
+    if (is_finer) {
+      choice.*slope /= kStepChange;
+    } else {
+      choice.*slope *= kStepChange;
+    }
     return choice;
   };
-  const auto climb = [&](const Move& up, const Move& down) {
-    const std::array<StepChoice, 2> choices = {moved(up), moved(down)};
+  const auto climb = [&](double StepChoice::*slope, bool finer_first) {
+    const std::array<bool, 2> directions = {finer_first, !finer_first};
+    const std::array<StepChoice, 2> choices = {changed(slope, directions[0]), changed(slope, directions[1])};
     std::vector<StatusOr<Attempt>> attempts(choices.size(), InternalError("not tried"));
     ForEachCandidate(static_cast<double>(candidate_.normal_mesh().mesh.positions.size()), choices.size(), [&](size_t i) { attempts[i] = code(choices[i]); });
-    const Move* move = nullptr;
-    if (keep_if_better(choices[0], attempts[0])) {
-      move = &up;
-    } else if (keep_if_better(choices[1], attempts[1])) {
-      move = &down;
-    }
-    if (move == nullptr) return;
-    for (StepChoice next = moved(*move); keep_if_better(next, code(next)); next = moved(*move)) {
+    for (size_t i = 0; i < choices.size(); ++i) {
+      if (!keep_if_better(choices[i], attempts[i])) continue;
+      for (StepChoice next = changed(slope, directions[i]); keep_if_better(next, code(next)); next = changed(slope, directions[i])) {
+      }
+      return;
     }
   };
   keep_if_better(StepChoice(steps_), NearGoal(Try(start_.log_lambda, effort_.suit_passes, 1), steps_));
-  climb([](StepChoice* c) { c->base /= kStepChange; }, [](StepChoice* c) { c->base *= kStepChange; });
-  climb([](StepChoice* c) { c->details *= kStepChange; }, [](StepChoice* c) { c->details /= kStepChange; });
+  climb(&StepChoice::base, true);
+  climb(&StepChoice::details, false);
 }
 
 // The best of a few codings near the goal, rather finer than that. Which coefficients a descent ends with is up to chance: slopes that hardly
