@@ -72,7 +72,7 @@ double CandidateSearch::TypicalSlope() const { return target_.is_rate ? kLogByte
 StatusOr<CandidateSearch::Attempt> CandidateSearch::Code(const StepChoice& steps, double log_lambda, int passes, int quality_layers, const CodedSurface* from) const {
   Attempt attempt;
   const double lambda = std::exp(log_lambda);
-  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({lambda, lambda * steps.details, lambda * steps.base, steps.last_detailed, passes, quality_layers}, mode_, from));
+  LACERTA_ASSIGN_OR_RETURN(attempt.stream, candidate_.Code({lambda, lambda * steps.details, lambda * steps.base, last_detailed_, passes, quality_layers}, mode_, from));
   const double estimate = EstimatePsnr(attempt.stream);
   attempt.psnr = estimate + offset_.value_or(0);
   attempt.value = target_.is_rate ? std::log(static_cast<double>(attempt.stream.size())) : CodingPsnr(estimate);
@@ -177,9 +177,9 @@ StatusOr<double> CandidateSearch::Score() {
   std::optional<Attempt> nearest;
   for (int i = 0; i < kScoreTries; ++i) {
     const double log_lambda = NextGuess();
-    const int before = std::exchange(steps_.last_detailed, candidate_.LastDetailed(std::exp(log_lambda)));
+    const int before = std::exchange(last_detailed_, candidate_.LastDetailed(std::exp(log_lambda)));
     LACERTA_ASSIGN_OR_RETURN(Attempt attempt, Try(log_lambda, effort_.score_passes, 1));
-    if (nearest && steps_.last_detailed == before) LearnSlope(*nearest, attempt);  // else they are not of one curve
+    if (nearest && last_detailed_ == before) LearnSlope(*nearest, attempt);  // else they are not of one curve
     if (!nearest || std::fabs(Miss(attempt)) < std::fabs(Miss(*nearest))) nearest = std::move(attempt);
     if (std::fabs(Miss(*nearest)) < kNearEnough) break;
   }
@@ -265,9 +265,9 @@ StatusOr<CandidateSearch::Attempt> CandidateSearch::Settle(const std::optional<C
 }
 
 StatusOr<MeasuredStream> CandidateSearch::Meet() {
-  steps_.last_detailed = candidate_.LastDetailed(std::exp(start_.log_lambda));
+  last_detailed_ = candidate_.LastDetailed(std::exp(start_.log_lambda));
   if (effort_.suit_passes > 0 && mode_ != EncodeMode::kPaper) SuitSteps();
-  for (;; ++steps_.last_detailed) {
+  for (;; ++last_detailed_) {
     values_.clear();  // those of fewer passes, or of other levels
     values_are_measured_ = false;
     LACERTA_ASSIGN_OR_RETURN(Attempt drawn, Draw());
@@ -275,7 +275,7 @@ StatusOr<MeasuredStream> CandidateSearch::Meet() {
     if (target_.is_rate) return MeetRate(std::move(drawn));
     LACERTA_ASSIGN_OR_RETURN(MeasuredStream met, MeetQuality(std::move(drawn)));
     // What is dropped with the finest level may be what is missing.
-    if (met.meets_target || steps_.last_detailed >= candidate_.num_levels()) return met;
+    if (met.meets_target || last_detailed_ >= candidate_.num_levels()) return met;
   }
 }
 

@@ -73,7 +73,6 @@ class CandidateSearch {
   // How the steps follow from the slope of the coefficients: the slopes that give them, as multiples of it.
   struct StepChoice {
     double details = 1, base = 1;
-    int last_detailed = 1;
   };
   // passes: of the descent; from: as for NormalMeshCandidate::Code.
   StatusOr<Attempt> Code(const StepChoice& steps, double log_lambda, int passes, int quality_layers, const CodedSurface* from = nullptr) const;
@@ -117,6 +116,7 @@ class CandidateSearch {
   std::map<double, double> values_;  // of the attempts so far, by ln(lambda): ln(bytes) at a rate, else CodingPsnr of the estimate
   std::optional<double> offset_;     // dB that a measure showed more than the estimate, which hardly depends on lambda
   StepChoice steps_;
+  int last_detailed_ = 1;  // level, 1 .. L
   bool values_are_measured_ = false;  // dB, where estimates do not lead to the target
   int measurements_ = 0;
 };
