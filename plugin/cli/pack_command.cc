@@ -344,7 +344,7 @@ void AddPackCommand(CLI::App* app, int* exit_code) {
       ->check(CLI::Range(1, 8));
   pack->add_option("--levels", arguments->levels, "any (default): refinement unless a simplified mesh without levels is clearly smaller; always; 0: never")
       ->check(CLI::IsMember({"any", "always", "0"}));
-  pack->add_option("--effort", arguments->effort, "fast: two fifths of the time, 5 % more bytes; normal (default); best: 40 % more time, never more bytes, 0.6 % fewer in the mean; assets two to three times the time")
+  pack->add_option("--effort", arguments->effort, "fast: about half the time, 4 % more bytes; normal (default); best: 30 % more time, never more bytes, 0.3 % fewer in the mean; assets two to three times the time")
       ->check(CLI::IsMember({"fast", "normal", "best"}));
   pack->add_flag("--external", arguments->external,
                  "Put refinements into a second file, OUT.refinements.bin, which readers fetch when they want it");
