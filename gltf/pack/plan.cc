@@ -126,7 +126,7 @@ class TriedFamily {
 
   // The quality to try in the place of `step`; none where what would be learned is not worth it.
   std::optional<size_t> NextTrial(size_t step, double worthwhile) const {
-    if (IsKnown(curve_, step)) return std::nullopt;
+    if (IsKnown(curve_, step)) return curve_.known.size() == 1 ? SecondTrial(worthwhile) : std::nullopt;
     constexpr double kJump = 0.25;  // ln(bytes) per dB: it has become a stream, say, and nobody knows where
     const RatePoint *below = nullptr, *above = nullptr;
     for (const RatePoint& point : curve_.known) {
@@ -150,6 +150,15 @@ class TriedFamily {
   std::vector<PrimitivePlan> Take(size_t known) { return std::move(plans_[known]); }
 
  private:
+  // A single trial does not tell what a finer quality takes, and where that is little a budget that seems spent is not.
+  std::optional<size_t> SecondTrial(double worthwhile) const {
+    constexpr size_t kFiner = 4;  // steps
+    if (curve_.known.front().bytes < worthwhile || !(curve_.known.front().error > 0.0)) return std::nullopt;
+    size_t step = curve_.known.front().step;
+    while (step < kQualitySteps && IsKnown(curve_, step)) ++step;
+    return step + kFiner <= kQualitySteps ? std::optional(step + kFiner - 1) : std::nullopt;
+  }
+
   // What is kept as it was is exact.
   static double ErrorOf(const PrimitiveReport& report) {
     if (report.storage == PrimitiveStorage::kUntouched) return 0.0;
@@ -196,7 +205,7 @@ StatusOr<std::vector<PrimitivePlan>> PlanForBytes(const PackedScene& scene, cons
       known_error += curves[f].known[chosen[f]].error;
       expected_error += ExpectedError(curves[f], shares[f]);
     }
-    if (known_bytes <= budget && known_bytes >= kGoodEnough * budget && expected_error >= kGoodEnough * known_error) break;
+    if (round > 0 && known_bytes <= budget && known_bytes >= kGoodEnough * budget && expected_error >= kGoodEnough * known_error) break;
     std::vector<size_t> tried, steps(families.size());
     for (size_t f = 0; f < families.size(); ++f) {
       const std::optional<size_t> next = families[f].NextTrial(shares[f], worthwhile);
