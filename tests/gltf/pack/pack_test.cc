@@ -633,10 +633,10 @@ TEST(Pack, BadInputIsNamed) {
     return status.message();
   };
   const float infinite = INFINITY;
-  EXPECT_THAT(message_with(0, 12 * 7, &infinite, 4),
+  EXPECT_THAT(message_with(0, size_t{12} * 7, &infinite, 4),
               AllOf(HasSubstr("mesh 0 (ball), primitive 0"), HasSubstr("vertex 7"), HasSubstr("not finite")));
   const uint16_t far = 60000;
-  EXPECT_THAT(message_with(1, 2 * 5, &far, 2),
+  EXPECT_THAT(message_with(1, size_t{2} * 5, &far, 2),
               AllOf(HasSubstr("accessor 1"), HasSubstr("index 60000"), HasSubstr("position 5")));
   EXPECT_EQ(PackGltf(PackGltf(builder.Glb(), Options(Fallback::kDraco)).value().glb, Options(Fallback::kDraco))
                 .status()
