@@ -1,6 +1,7 @@
 #include "draco/zero_level_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -8,12 +9,14 @@
 #include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "draco/bounded_simplification.h"
 #include "draco/decoded_distance.h"
 #include "draco/simplified_size.h"
 #include "draco/zero_level.h"
 #include "draco/zero_level_candidate.h"
+#include "geometry/for_each_branch.h"
 #include "remesh/fitted_simplify.h"
 #include "remesh/mesh_fit.h"
 #include "remesh/simplify.h"
@@ -50,11 +53,11 @@ class ZeroLevelSearch {
     if (first_ == 0) first_ = FirstSize();
     if (tried_.empty() && IsOutOfReach(most_bytes)) return false;
     if (!simplified_) Begin();
-    LACERTA_RETURN_IF_ERROR(Look(first_));
+    LACERTA_RETURN_IF_ERROR(Look({first_}));
     const Trial& trial = tried_.at(first_);
     if (IsOver(kHopeless * most_bytes)) return false;
     const uint32_t usual = target_.is_rate ? 0 : SizeByShare(trial);
-    if (usual > 0) LACERTA_RETURN_IF_ERROR(Look(usual));
+    if (usual > 0) LACERTA_RETURN_IF_ERROR(Look({usual}));
     if (IsOver(kHopelessAtUsual * most_bytes)) return false;
     // There the best is broad, and looking takes long. The usual size was better than its neighbors on 22 of 22 meshes.
     constexpr uint32_t kManyTriangles = 3000;
@@ -62,13 +65,12 @@ class ZeroLevelSearch {
     for (double ratio = kWideRatio; ratio > kNarrowRatio && !is_settled; ratio = std::sqrt(ratio)) {
       for (int moves = 0; moves < kMostMoves; ++moves) {
         const uint32_t center = best_;
-        LACERTA_RETURN_IF_ERROR(Look(Clamped(center / ratio)));
-        if (best_ == center) LACERTA_RETURN_IF_ERROR(Look(Clamped(center * ratio)));
+        LACERTA_RETURN_IF_ERROR(Look({Clamped(center / ratio), Clamped(center * ratio)}));
         if (best_ == center) break;
       }
       if (best_ > kManyTriangles) break;
     }
-    if (MayTakeFewerAsItIs(best_)) LACERTA_RETURN_IF_ERROR(Look(Clamped(1e18)));
+    if (MayTakeFewerAsItIs(best_)) LACERTA_RETURN_IF_ERROR(Look({Clamped(1e18)}));
     return MayTakeFewerThan(most_bytes);
   }
 
@@ -104,6 +106,7 @@ class ZeroLevelSearch {
     };
     while (is_to_grow()) {
       LACERTA_RETURN_IF_ERROR(Grow(Square(stream.distance)));
+      if (IsOver(kHopelessAtBest * most_bytes)) break;
       LACERTA_RETURN_IF_ERROR(compare_with_best());
     }
     while (const std::optional<uint32_t> next = SmallestOtherThan(finished, stream.stream.size())) {
@@ -116,6 +119,8 @@ class ZeroLevelSearch {
 
  private:
   static constexpr size_t kMostSamples = 80000;
+  static constexpr double kSamplesPerTriangle = 4;
+  static constexpr size_t kMostAtATime = 20'000;  // triangles of each
   // By which the numbers of triangles differ that are compared.
   static constexpr double kWideRatio = 1.25, kNarrowRatio = 1.1;
   static constexpr int kMostMoves = 4;
@@ -168,39 +173,66 @@ class ZeroLevelSearch {
     fit_target_.Resample(std::clamp(wanted, FewestSamples(mesh_), kMostSamples));
   }
 
-  Status Look(uint32_t triangles) {
-    if (tried_.count(triangles) != 0) return Status();
-    std::unique_ptr<ZeroLevelCandidate> candidate = CandidateOf(triangles);
-    LACERTA_ASSIGN_OR_RETURN(const Trial trial, Try(candidate.get()));
-    if (tried_.empty() || trial.score < tried_.at(best_).score) {
-      best_ = triangles;
-      best_candidate_ = std::move(candidate);
+  // Work on several codings or candidates of so many triangles: in parallel, or in order where their memory counts for more than time.
+  template <typename Work>
+  static void ForEachOf(size_t count, size_t triangles, const Work& work) {
+    if (triangles <= kMostAtATime) return ForEachBranch(count, work);
+    for (size_t i = 0; i < count; ++i) work(i);
+  }
+
+  // Tries sizes that were not tried yet, small ones at a time.
+  Status Look(std::vector<uint32_t> sizes) {
+    if (sizes.size() > 1 && *std::max_element(sizes.begin(), sizes.end()) > kMostAtATime) {
+      for (const uint32_t size : sizes) LACERTA_RETURN_IF_ERROR(Look({size}));
+      return Status();
     }
-    tried_.emplace(triangles, trial);
+    sizes.erase(std::remove_if(sizes.begin(), sizes.end(), [&](uint32_t size) { return tried_.count(size) != 0; }), sizes.end());
+    sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
+    if (sizes.empty()) return Status();
+    std::vector<TriangleMesh> meshes;
+    meshes.reserve(sizes.size());
+    for (const uint32_t size : sizes) meshes.push_back(simplified_->MeshWith(size));
+    TakeSamples(kSamplesPerTriangle, *std::max_element(sizes.begin(), sizes.end()));
+    std::vector<std::unique_ptr<ZeroLevelCandidate>> candidates(sizes.size());
+    std::vector<StatusOr<Trial>> trials(sizes.size(), Trial());
+    ForEachBranch(sizes.size(), [&](size_t i) {
+      candidates[i] = std::make_unique<ZeroLevelCandidate>(fit_target_, std::move(meshes[i]), SourceOf(sizes[i]));
+      trials[i] = Try(candidates[i].get());
+    });
+    for (size_t i = 0; i < sizes.size(); ++i) {
+      LACERTA_ASSIGN_OR_RETURN(const Trial trial, std::move(trials[i]));
+      if (tried_.empty() || trial.score < tried_.at(best_).score) {
+        best_ = sizes[i];
+        best_candidate_ = std::move(candidates[i]);
+      }
+      tried_.emplace(sizes[i], trial);
+    }
     return Status();
   }
 
-  // With samples for its size.
-  std::unique_ptr<ZeroLevelCandidate> CandidateOf(uint32_t triangles) {
+  ZeroLevelCandidate::Source SourceOf(uint32_t triangles) const {
     using Source = ZeroLevelCandidate::Source;
-    const Source source = triangles >= mesh_.triangles.size() ? Source::kInput : simplified_->IsOfStep(triangles) ? Source::kFitted : Source::kSimplified;
-    TriangleMesh simplified = simplified_->MeshWith(triangles);
-    TakeSamples(4, triangles);
-    return std::make_unique<ZeroLevelCandidate>(fit_target_, std::move(simplified), source);
+    return triangles >= mesh_.triangles.size() ? Source::kInput : simplified_->IsOfStep(triangles) ? Source::kFitted : Source::kSimplified;
   }
 
   // Goes on from the best size, of this squared distance, to one that may well meet the PSNR.
   Status Grow(double distortion) {
-    const double ratio = std::clamp(std::pow(distortion / distortion_, 1 / kFall), kNarrowRatio, 2.0);
-    const uint32_t larger = std::max(Clamped(best_ * ratio), Clamped(best_ + 1.0));
-    LACERTA_RETURN_IF_ERROR(Look(larger));
+    uint32_t larger = best_;
+    do {
+      const double ratio = std::clamp(std::pow(distortion / distortion_, 1 / kFall), kNarrowRatio, 2.0);
+      larger = std::max(Clamped(larger * ratio), Clamped(larger + 1.0));
+      LACERTA_RETURN_IF_ERROR(Look({larger}));
+      distortion = bias_ * tried_.at(larger).fit_distortion;
+    } while (!tried_.at(larger).meets && larger < mesh_.triangles.size());
     if (best_ != larger) Choose(larger);
     return Status();
   }
 
   void Choose(uint32_t triangles) {
     best_ = triangles;
-    best_candidate_ = CandidateOf(triangles);  // FinishBest fits it for its rate
+    TriangleMesh simplified = simplified_->MeshWith(triangles);
+    TakeSamples(kSamplesPerTriangle, triangles);
+    best_candidate_ = std::make_unique<ZeroLevelCandidate>(fit_target_, std::move(simplified), SourceOf(triangles));  // FinishBest fits it for its rate
   }
 
   // The size, of those that were tried and seemed to meet the PSNR in fewer than so many bytes, that seemed to take the fewest; none at a rate.
@@ -208,7 +240,7 @@ class ZeroLevelSearch {
     std::optional<uint32_t> smallest;
     if (target_.is_rate) return smallest;
     for (const auto& [size, trial] : tried_) {
-      if (!trial.meets || trial.bytes >= bytes || finished.count(size) != 0) continue;
+      if (!trial.meets || bias_ * trial.fit_distortion > distortion_ || trial.bytes >= bytes || finished.count(size) != 0) continue;
       bytes = trial.bytes;
       smallest = size;
     }
@@ -253,21 +285,22 @@ class ZeroLevelSearch {
   Status MeetPsnr(ZeroLevelCandidate* at_size, Trial* trial) const {
     ZeroLevelCandidate& candidate = *at_size;
     constexpr double kMostOfFit = 0.93, kFarOff = 1e9;
-    if (candidate.fit_distortion() > kMostOfFit * distortion_) {
-      trial->score = kFarOff * (candidate.fit_distortion() / distortion_);
-      trial->step = RateModel::StepFor((1 - kMostOfFit) * distortion_);
+    const double wanted = distortion_ / bias_;
+    if (candidate.fit_distortion() > kMostOfFit * wanted) {
+      trial->score = kFarOff * (candidate.fit_distortion() / wanted);
+      trial->step = RateModel::StepFor((1 - kMostOfFit) * wanted);
       return Status();
     }
-    candidate.FitForRate(distortion_ - candidate.fit_distortion(), 1);
-    double step = RateModel::StepFor(std::max(distortion_ - candidate.fit_distortion(), (1 - kMostOfFit) * distortion_));
+    candidate.FitForRate(wanted - candidate.fit_distortion(), 1);
+    double step = RateModel::StepFor(std::max(wanted - candidate.fit_distortion(), (1 - kMostOfFit) * wanted));
     constexpr int kSteps = 3;
     double db = 0;
     for (int i = 0; i < kSteps; ++i) {
       LACERTA_ASSIGN_OR_RETURN(const ZeroLevelCandidate::Coding coding, candidate.Code(step, 1, CodingEffort::kQuick, target_.base_coding));
       trial->Take(coding);
-      db = 10 * std::log10(coding.distortion / distortion_);
+      db = 10 * std::log10(coding.distortion / wanted);
       if (std::fabs(db) < 0.3) break;
-      step = NextStep(step, coding.distortion, candidate.fit_distortion());
+      step = NextStep(step, coding.distortion, candidate.fit_distortion(), wanted);
     }
     // Still a little off the target, where a dB is worth 6 % of the bytes.
     trial->score = std::log(static_cast<double>(trial->bytes)) + 0.06 * std::clamp(db, -10.0, 10.0);
@@ -276,9 +309,9 @@ class ZeroLevelSearch {
   }
 
   // Of the squared distance, the part that the lattice adds goes with the square of the step.
-  double NextStep(double step, double distortion, double fit) const {
-    const double added = distortion - fit, wanted = distortion_ - fit;
-    const double ratio = added > 0 && wanted > 0 ? std::sqrt(wanted / added) : std::pow(distortion_ / distortion, 0.6);
+  static double NextStep(double step, double distortion, double fit, double wanted) {
+    const double added = distortion - fit, allowed = wanted - fit;
+    const double ratio = added > 0 && allowed > 0 ? std::sqrt(allowed / added) : std::pow(wanted / distortion, 0.6);
     return step * std::clamp(ratio, 0.4, 2.5);
   }
 
@@ -319,8 +352,8 @@ class ZeroLevelSearch {
     return std::clamp(std::exp2(bits_per_triangle * (1 - factor) / kCoordinatesPerTriangle), 0.25, 4.0);
   }
 
-  // Rounding makes bytes and distance jump a little with the step: several steps are tried, more of them where that costs little,
-  // and judged by few samples first.
+  // Rounding makes bytes and distance jump a little with the step: several steps are tried, two at a time, more of them where that costs
+  // little, and judged by few samples first.
   StatusOr<ZeroLevelStream> FinishBest() {
     ZeroLevelCandidate& candidate = *best_candidate_;
     constexpr int kFitRounds = 2;
@@ -329,7 +362,7 @@ class ZeroLevelSearch {
     const int num_tries = std::max(2, static_cast<int>(std::lround(tries_ * usual_tries)));
     const int descent_rounds = triangles < 5000 ? 3 : 2;
     TakeSamples(8, std::max(triangles, FewestSamples(mesh_)));
-    const double added = target_.is_rate ? candidate.fit_distortion() : distortion_ - candidate.fit_distortion();
+    const double added = target_.is_rate ? candidate.fit_distortion() : distortion_ / bias_ - candidate.fit_distortion();
     candidate.FitForRate(std::max(added, 0.05 * candidate.fit_distortion()), kFitRounds);
     double step = tried_.at(best_).step;
     if (target_.base_coding == BaseCoding::kStock) candidate.FitForStream(step);
@@ -339,9 +372,8 @@ class ZeroLevelSearch {
     double best_distortion = 0;
     TriedStep met, missed;  // the largest step at the target, the smallest beyond it
     const auto is_out_of_reach = [&] { return !target_.is_rate && !best->meets_target && bias * candidate.fit_distortion() > distortion_; };  // at any step
-    for (int i = 0; i < num_tries || (!best->meets_target && i < 2 * num_tries); ++i) {
-      if (i > 1 && is_out_of_reach()) break;
-      LACERTA_ASSIGN_OR_RETURN(ZeroLevelCandidate::Coding coding, candidate.Code(step, descent_rounds, CodingEffort::kFull, target_.base_coding));
+    // Measures a coding where it may be the best, and returns a step to try next.
+    const auto take = [&](ZeroLevelCandidate::Coding coding) {
       const double distortion = bias * coding.distortion;
       const auto bytes = static_cast<double>(coding.bytes);
       const bool is_small_enough = !best || !best->meets_target || coding.bytes < best->stream.size();
@@ -356,17 +388,27 @@ class ZeroLevelSearch {
           best_distortion = distortion;
         }
       }
-      const double jitter = 1 + 0.02 * (i % 3 - 1);
-      if (target_.is_rate) {
-        step *= StepRatioForBytes(0.995 * target_.bytes / bytes, candidate) * jitter;
-      } else {
-        const double cautious = std::max(distortion, bias * coding.distortion) * 1.005;
-        if (cautious <= distortion_ && step > met.step) met = {step, cautious};
-        if (cautious > distortion_ && (missed.step == 0 || step < missed.step)) missed = {step, cautious};
-        const bool is_between = 0 < met.step && met.step < missed.step;
-        step = (is_between ? StepBetween(met, missed) : NextStep(step, cautious, candidate.fit_distortion())) * jitter;
+      if (target_.is_rate) return coding.step * StepRatioForBytes(0.995 * target_.bytes / bytes, candidate);
+      const double cautious = std::max(distortion, bias * coding.distortion) * 1.005;
+      if (cautious <= distortion_ && coding.step > met.step) met = {coding.step, cautious};
+      if (cautious > distortion_ && (missed.step == 0 || coding.step < missed.step)) missed = {coding.step, cautious};
+      const bool is_between = 0 < met.step && met.step < missed.step;
+      return is_between ? StepBetween(met, missed) : NextStep(coding.step, cautious, candidate.fit_distortion(), distortion_);
+    };
+    constexpr int kAtATime = 2;
+    constexpr double kFirst = 0.03, kNarrow = 0.006, kWide = 0.015;  // to both sides of a step, as shares of it
+    for (int i = 0; i < num_tries || (!best->meets_target && i < 2 * num_tries); i += kAtATime) {
+      if (i > 1 && is_out_of_reach()) break;
+      const double spread = i == 0 ? kFirst : i % 4 == 0 ? kNarrow : kWide;
+      const std::array<double, kAtATime> steps = {step * (1 + spread), step * (1 - spread)};
+      std::array<StatusOr<ZeroLevelCandidate::Coding>, kAtATime> codings = {ZeroLevelCandidate::Coding(), ZeroLevelCandidate::Coding()};
+      ForEachOf(kAtATime, triangles, [&](size_t k) { codings[k] = candidate.Code(steps[k], descent_rounds, CodingEffort::kFull, target_.base_coding); });
+      for (StatusOr<ZeroLevelCandidate::Coding>& coding : codings) {
+        LACERTA_RETURN_IF_ERROR(coding.status());
+        step = take(std::move(coding).value());
       }
     }
+    bias_ = bias;
     best->measurements = measurements;
     return std::move(*best);
   }
@@ -379,6 +421,7 @@ class ZeroLevelSearch {
   FitTarget fit_target_;
   std::optional<FittedSimplification> simplified_;
   double distortion_ = 0;  // of a PSNR target
+  double bias_ = 1;        // of squared distances measured in full against those by few samples, at the size that was finished last
   std::map<uint32_t, Trial> tried_;  // by number of triangles asked for
   uint32_t first_ = 0, best_ = 0;    // of those
   std::unique_ptr<ZeroLevelCandidate> best_candidate_;  // the only one that is kept: each is as large as its mesh
