@@ -231,13 +231,16 @@ TEST(EncodeMeshTest, StatesOfLayersComeNearerAndNearer) {
 }
 
 TEST(EncodeMeshTest, SameBytesOnOneThreadAndOnTwo) {
-  const EncodeOptions options = OptionsFor(Kind::kPsnr, 50);
-  std::vector<Bytes> streams;
-  for (const size_t threads : {1, 2}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    streams.push_back(EncodeOrDie(Scan(), options).stream);
+  EncodeOptions options = OptionsFor(Kind::kPsnr, 50);
+  for (const LevelChoice levels : {LevelChoice::kAlways, LevelChoice::kNever}) {
+    options.levels = levels;
+    std::vector<Bytes> streams;
+    for (const size_t threads : {1, 2}) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      streams.push_back(EncodeOrDie(Scan(), options).stream);
+    }
+    EXPECT_EQ(streams[0], streams[1]);
   }
-  EXPECT_EQ(streams[0], streams[1]);
 }
 
 TEST(EncodeMeshTest, LevelsAreLeftOutWhereTheyDoNotPay) {
