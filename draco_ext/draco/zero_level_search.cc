@@ -65,7 +65,7 @@ class ZeroLevelSearch {
     for (double ratio = kWideRatio; ratio > kNarrowRatio && !is_settled; ratio = std::sqrt(ratio)) {
       for (int moves = 0; moves < kMostMoves; ++moves) {
         const uint32_t center = best_;
-        LACERTA_RETURN_IF_ERROR(Look({Clamped(center / ratio), Clamped(center * ratio)}));
+        LACERTA_RETURN_IF_ERROR(Look(UntriedBeside(center, ratio)));
         if (best_ == center) break;
       }
       if (best_ > kManyTriangles) break;
@@ -178,6 +178,17 @@ class ZeroLevelSearch {
   static void ForEachOf(size_t count, size_t triangles, const Work& work) {
     if (triangles <= kMostAtATime) return ForEachBranch(count, work);
     for (size_t i = 0; i < count; ++i) work(i);
+  }
+
+  // Sizes at that ratio below and above one, but for those that hardly differ from one that was tried.
+  std::vector<uint32_t> UntriedBeside(uint32_t center, double ratio) const {
+    constexpr double kSame = 0.01;
+    std::vector<uint32_t> sizes;
+    for (const double size : {center / ratio, center * ratio}) {
+      const auto next = tried_.lower_bound(Clamped((1 - kSame) * size));
+      if (next == tried_.end() || next->first > (1 + kSame) * size) sizes.push_back(Clamped(size));
+    }
+    return sizes;
   }
 
   // Tries sizes that were not tried yet, small ones at a time.
