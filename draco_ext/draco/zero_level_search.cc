@@ -1,7 +1,6 @@
 #include "draco/zero_level_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -14,11 +13,9 @@
 #include "draco/bounded_simplification.h"
 #include "draco/decoded_distance.h"
 #include "draco/simplified_size.h"
-#include "draco/zero_level.h"
 #include "draco/zero_level_candidate.h"
 #include "geometry/for_each_branch.h"
 #include "remesh/fitted_simplify.h"
-#include "remesh/mesh_fit.h"
 #include "remesh/simplify.h"
 
 namespace lacerta {
@@ -54,7 +51,7 @@ class ZeroLevelSearch {
     if (tried_.empty() && IsOutOfReach(most_bytes)) return false;
     if (!simplified_) Begin();
     LACERTA_RETURN_IF_ERROR(Look({first_}));
-    const Trial& trial = tried_.at(first_);
+    const ZeroLevelTrial& trial = tried_.at(first_);
     if (IsOver(kHopeless * most_bytes)) return false;
     const uint32_t usual = target_.is_rate ? 0 : SizeByShare(trial);
     if (usual > 0) LACERTA_RETURN_IF_ERROR(Look({usual}));
@@ -79,7 +76,7 @@ class ZeroLevelSearch {
 
   // Of the stream of the best size, about; the fewest that so many triangles take where that seems to miss the PSNR.
   double BestBytes() const {
-    const Trial& best = tried_.at(best_);
+    const ZeroLevelTrial& best = tried_.at(best_);
     return best.meets ? static_cast<double>(best.bytes) : kFewestBytesPerTriangle * static_cast<double>(best.num_triangles);
   }
 
@@ -120,7 +117,6 @@ class ZeroLevelSearch {
  private:
   static constexpr size_t kMostSamples = 80000;
   static constexpr double kSamplesPerTriangle = 4;
-  static constexpr size_t kMostAtATime = 20'000;  // triangles of each
   // By which the numbers of triangles differ that are compared.
   static constexpr double kWideRatio = 1.25, kNarrowRatio = 1.1;
   static constexpr int kMostMoves = 4;
@@ -129,22 +125,6 @@ class ZeroLevelSearch {
   static constexpr double kHopeless = 1.26, kHopelessAtUsual = 1.18, kHopelessAtBest = 1.15;
   // The squared distance falls by about 5 dB as triangles double: by this power of their number.
   static constexpr double kFall = 1.75;
-
-  struct Trial {
-    size_t num_triangles = 0;
-    double fit_distortion = 0;
-    double step = 0;  // of the coding that came nearest to the target
-    size_t bytes = 0;
-    double distortion = 0;
-    double score = 0;  // less is better
-    bool meets = false;
-
-    void Take(const ZeroLevelCandidate::Coding& coding) {
-      step = coding.step;
-      bytes = coding.bytes;
-      distortion = coding.distortion;
-    }
-  };
 
   // Whether the input, if its many triangles are regular, may take fewer bytes than a simplified mesh of so many.
   bool MayTakeFewerAsItIs(double triangles) const { return static_cast<double>(mesh_.triangles.size()) < kMostRegular * triangles; }
@@ -158,7 +138,7 @@ class ZeroLevelSearch {
 
   // Whether the best size so far takes more than so many bytes at a PSNR.
   bool IsOver(double bytes) const {
-    const Trial& best = tried_.at(best_);
+    const ZeroLevelTrial& best = tried_.at(best_);
     return !target_.is_rate && best.meets && static_cast<double>(best.bytes) > bytes;
   }
 
@@ -171,13 +151,6 @@ class ZeroLevelSearch {
   void TakeSamples(double per_triangle, size_t triangles) {
     const auto wanted = static_cast<size_t>(per_triangle * static_cast<double>(triangles));
     fit_target_.Resample(std::clamp(wanted, FewestSamples(mesh_), kMostSamples));
-  }
-
-  // Work on several codings or candidates of so many triangles: in parallel, or in order where their memory counts for more than time.
-  template <typename Work>
-  static void ForEachOf(size_t count, size_t triangles, const Work& work) {
-    if (triangles <= kMostAtATime) return ForEachBranch(count, work);
-    for (size_t i = 0; i < count; ++i) work(i);
   }
 
   // Sizes at that ratio below and above one, but for those that hardly differ from one that was tried.
@@ -193,7 +166,7 @@ class ZeroLevelSearch {
 
   // Tries sizes that were not tried yet, small ones at a time.
   Status Look(std::vector<uint32_t> sizes) {
-    if (sizes.size() > 1 && *std::max_element(sizes.begin(), sizes.end()) > kMostAtATime) {
+    if (sizes.size() > 1 && *std::max_element(sizes.begin(), sizes.end()) > kMostTrianglesAtATime) {
       for (const uint32_t size : sizes) LACERTA_RETURN_IF_ERROR(Look({size}));
       return Status();
     }
@@ -205,13 +178,13 @@ class ZeroLevelSearch {
     for (const uint32_t size : sizes) meshes.push_back(simplified_->MeshWith(size));
     TakeSamples(kSamplesPerTriangle, *std::max_element(sizes.begin(), sizes.end()));
     std::vector<std::unique_ptr<ZeroLevelCandidate>> candidates(sizes.size());
-    std::vector<StatusOr<Trial>> trials(sizes.size(), Trial());
+    std::vector<StatusOr<ZeroLevelTrial>> trials(sizes.size(), ZeroLevelTrial());
     ForEachBranch(sizes.size(), [&](size_t i) {
       candidates[i] = std::make_unique<ZeroLevelCandidate>(fit_target_, std::move(meshes[i]), SourceOf(sizes[i]));
-      trials[i] = Try(candidates[i].get());
+      trials[i] = TrySteps(target_, meter_, bias_, candidates[i].get());
     });
     for (size_t i = 0; i < sizes.size(); ++i) {
-      LACERTA_ASSIGN_OR_RETURN(const Trial trial, std::move(trials[i]));
+      LACERTA_ASSIGN_OR_RETURN(const ZeroLevelTrial trial, std::move(trials[i]));
       if (tried_.empty() || trial.score < tried_.at(best_).score) {
         best_ = sizes[i];
         best_candidate_ = std::move(candidates[i]);
@@ -259,7 +232,7 @@ class ZeroLevelSearch {
   }
 
   // Where the fit takes the share of the distance that it takes at the best sizes of most surfaces.
-  uint32_t SizeByShare(const Trial& trial) const {
+  uint32_t SizeByShare(const ZeroLevelTrial& trial) const {
     constexpr double kBestShare = 0.78;
     const double ratio = std::pow(trial.fit_distortion / (kBestShare * distortion_), 1 / kFall);
     return Clamped(static_cast<double>(trial.num_triangles) * std::clamp(ratio, 0.4, 2.5));
@@ -285,143 +258,20 @@ class ZeroLevelSearch {
     return Clamped(SimplifiedSize(sequence_, meter_, std::sqrt(kUsualGain * distortion_), kSizeSamples, kTolerance));
   }
 
-  StatusOr<Trial> Try(ZeroLevelCandidate* candidate) const {
-    Trial trial;
-    LACERTA_RETURN_IF_ERROR(target_.is_rate ? MeetRate(candidate, &trial) : MeetPsnr(candidate, &trial));
-    trial.num_triangles = candidate->num_triangles();
-    trial.fit_distortion = candidate->fit_distortion();
-    return trial;
-  }
-
-  Status MeetPsnr(ZeroLevelCandidate* at_size, Trial* trial) const {
-    ZeroLevelCandidate& candidate = *at_size;
-    constexpr double kMostOfFit = 0.93, kFarOff = 1e9;
-    const double wanted = distortion_ / bias_;
-    if (candidate.fit_distortion() > kMostOfFit * wanted) {
-      trial->score = kFarOff * (candidate.fit_distortion() / wanted);
-      trial->step = RateModel::StepFor((1 - kMostOfFit) * wanted);
-      return Status();
-    }
-    candidate.FitForRate(wanted - candidate.fit_distortion(), 1);
-    double step = RateModel::StepFor(std::max(wanted - candidate.fit_distortion(), (1 - kMostOfFit) * wanted));
-    constexpr int kSteps = 3;
-    double db = 0;
-    for (int i = 0; i < kSteps; ++i) {
-      LACERTA_ASSIGN_OR_RETURN(const ZeroLevelCandidate::Coding coding, candidate.Code(step, 1, CodingEffort::kQuick, target_.base_coding));
-      trial->Take(coding);
-      db = 10 * std::log10(coding.distortion / wanted);
-      if (std::fabs(db) < 0.3) break;
-      step = NextStep(step, coding.distortion, candidate.fit_distortion(), wanted);
-    }
-    // Still a little off the target, where a dB is worth 6 % of the bytes.
-    trial->score = std::log(static_cast<double>(trial->bytes)) + 0.06 * std::clamp(db, -10.0, 10.0);
-    trial->meets = true;
-    return Status();
-  }
-
-  // Of the squared distance, the part that the lattice adds goes with the square of the step.
-  static double NextStep(double step, double distortion, double fit, double wanted) {
-    const double added = distortion - fit, allowed = wanted - fit;
-    const double ratio = added > 0 && allowed > 0 ? std::sqrt(allowed / added) : std::pow(wanted / distortion, 0.6);
-    return step * std::clamp(ratio, 0.4, 2.5);
-  }
-
-  struct TriedStep {
-    double step = 0, distortion = 0;
-  };
-
-  // Where the squared distance, taken for a power of the step, is what is wanted.
-  double StepBetween(const TriedStep& met, const TriedStep& missed) const {
-    const double share = std::log(distortion_ / met.distortion) / std::log(missed.distortion / met.distortion);
-    constexpr double kMiddle = 0.5;  // where nothing is known of the power: no distortion at all, or equal ones
-    return met.step * std::pow(missed.step / met.step, std::isfinite(share) ? std::clamp(share, 0.1, 0.9) : kMiddle);
-  }
-
-  Status MeetRate(ZeroLevelCandidate* at_size, Trial* trial) const {
-    ZeroLevelCandidate& candidate = *at_size;
-    const double fit = std::max(candidate.fit_distortion(), 1e-14 * Square(meter_.diagonal()));
-    candidate.FitForRate(fit, 1);
-    double step = RateModel::StepFor(fit);
-    constexpr int kSteps = 5;
-    for (int i = 0; i < kSteps; ++i) {
-      LACERTA_ASSIGN_OR_RETURN(const ZeroLevelCandidate::Coding coding, candidate.Code(step, 1, CodingEffort::kQuick, target_.base_coding));
-      const double excess = static_cast<double>(coding.bytes) / target_.bytes;
-      const bool fits = excess <= 1;
-      if (i == 0 || fits || !trial->meets) trial->Take(coding);
-      trial->meets = trial->meets || fits;
-      if (excess > 0.98 && excess <= 1) break;
-      step *= StepRatioForBytes(1 / excess * 0.99, candidate);
-    }
-    trial->score = std::log(trial->distortion) + (trial->meets ? 0 : 1e3 * static_cast<double>(trial->bytes) / target_.bytes);
-    return Status();
-  }
-
-  // The step against the present one that multiplies the bytes by `factor`: a bit of every coordinate for each doubling.
-  double StepRatioForBytes(double factor, const ZeroLevelCandidate& candidate) const {
-    const double bits_per_triangle = 8 * target_.bytes / static_cast<double>(candidate.num_triangles());
-    constexpr double kCoordinatesPerTriangle = 1.5;
-    return std::clamp(std::exp2(bits_per_triangle * (1 - factor) / kCoordinatesPerTriangle), 0.25, 4.0);
-  }
-
-  // Rounding makes bytes and distance jump a little with the step: several steps are tried, two at a time, more of them where that costs
-  // little, and judged by few samples first.
+  // More steps are tried where that costs little.
   StatusOr<ZeroLevelStream> FinishBest() {
     ZeroLevelCandidate& candidate = *best_candidate_;
     constexpr int kFitRounds = 2;
     const size_t triangles = candidate.num_triangles();
     const int usual_tries = triangles < 2000 ? 8 : triangles < 5000 ? 6 : 4;
-    const int num_tries = std::max(2, static_cast<int>(std::lround(tries_ * usual_tries)));
-    const int descent_rounds = triangles < 5000 ? 3 : 2;
     TakeSamples(8, std::max(triangles, FewestSamples(mesh_)));
     const double added = target_.is_rate ? candidate.fit_distortion() : distortion_ / bias_ - candidate.fit_distortion();
     candidate.FitForRate(std::max(added, 0.05 * candidate.fit_distortion()), kFitRounds);
-    double step = tried_.at(best_).step;
+    const double step = tried_.at(best_).step;
     if (target_.base_coding == BaseCoding::kStock) candidate.FitForStream(step);
-    double bias = 1;  // of squared distances measured in full against those by few samples
-    std::optional<ZeroLevelStream> best;
-    int measurements = 0;
-    double best_distortion = 0;
-    TriedStep met, missed;  // the largest step at the target, the smallest beyond it
-    const auto is_out_of_reach = [&] { return !target_.is_rate && !best->meets_target && bias * candidate.fit_distortion() > distortion_; };  // at any step
-    // Measures a coding where it may be the best, and returns a step to try next.
-    const auto take = [&](ZeroLevelCandidate::Coding coding) {
-      const double distortion = bias * coding.distortion;
-      const auto bytes = static_cast<double>(coding.bytes);
-      const bool is_small_enough = !best || !best->meets_target || coding.bytes < best->stream.size();
-      const bool may_be_better = target_.is_rate ? bytes <= target_.bytes && (best_distortion == 0 || distortion < best_distortion)
-                                                 : is_small_enough && distortion < 1.01 * distortion_;
-      if (!best || (may_be_better && (measurements < CandidateSearch::kMostMeasurements || !best->meets_target))) {
-        ZeroLevelStream stream = MeasuredZeroLevel(std::move(coding.coded), meter_, target_);
-        ++measurements;
-        if (coding.distortion > 0) bias = Square(stream.distance) / coding.distortion;
-        if (!best || IsBetter(OutcomeOf(stream), OutcomeOf(*best), target_)) {
-          best = std::move(stream);
-          best_distortion = distortion;
-        }
-      }
-      if (target_.is_rate) return coding.step * StepRatioForBytes(0.995 * target_.bytes / bytes, candidate);
-      const double cautious = std::max(distortion, bias * coding.distortion) * 1.005;
-      if (cautious <= distortion_ && coding.step > met.step) met = {coding.step, cautious};
-      if (cautious > distortion_ && (missed.step == 0 || coding.step < missed.step)) missed = {coding.step, cautious};
-      const bool is_between = 0 < met.step && met.step < missed.step;
-      return is_between ? StepBetween(met, missed) : NextStep(coding.step, cautious, candidate.fit_distortion(), distortion_);
-    };
-    constexpr int kAtATime = 2;
-    constexpr double kFirst = 0.03, kNarrow = 0.006, kWide = 0.015;  // to both sides of a step, as shares of it
-    for (int i = 0; i < num_tries || (!best->meets_target && i < 2 * num_tries); i += kAtATime) {
-      if (i > 1 && is_out_of_reach()) break;
-      const double spread = i == 0 ? kFirst : i % 4 == 0 ? kNarrow : kWide;
-      const std::array<double, kAtATime> steps = {step * (1 + spread), step * (1 - spread)};
-      std::array<StatusOr<ZeroLevelCandidate::Coding>, kAtATime> codings = {ZeroLevelCandidate::Coding(), ZeroLevelCandidate::Coding()};
-      ForEachOf(kAtATime, triangles, [&](size_t k) { codings[k] = candidate.Code(steps[k], descent_rounds, CodingEffort::kFull, target_.base_coding); });
-      for (StatusOr<ZeroLevelCandidate::Coding>& coding : codings) {
-        LACERTA_RETURN_IF_ERROR(coding.status());
-        step = take(std::move(coding).value());
-      }
-    }
-    bias_ = bias;
-    best->measurements = measurements;
-    return std::move(*best);
+    LACERTA_ASSIGN_OR_RETURN(FinishedZeroLevel finished, FinishSteps(target_, meter_, candidate, step, std::max(2, static_cast<int>(std::lround(tries_ * usual_tries)))));
+    bias_ = finished.bias;
+    return std::move(finished.stream);
   }
 
   const TriangleMesh& mesh_;
@@ -433,22 +283,10 @@ class ZeroLevelSearch {
   std::optional<FittedSimplification> simplified_;
   double distortion_ = 0;  // of a PSNR target
   double bias_ = 1;        // of squared distances measured in full against those by few samples, at the size that was finished last
-  std::map<uint32_t, Trial> tried_;  // by number of triangles asked for
+  std::map<uint32_t, ZeroLevelTrial> tried_;  // by number of triangles asked for
   uint32_t first_ = 0, best_ = 0;    // of those
   std::unique_ptr<ZeroLevelCandidate> best_candidate_;  // the only one that is kept: each is as large as its mesh
 };
-
-ZeroLevelStream MeasuredZeroLevel(CodedZeroLevel coded, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                  const SurfaceDistanceOptions& samples) {
-  ZeroLevelStream result;
-  result.stream = std::move(coded.stream);
-  result.coding = coded.coding;
-  result.mesh = std::move(coded.mesh);
-  result.distance = DecodedDistance(meter, result.mesh, samples);
-  result.psnr = Psnr(result.distance, meter.diagonal());
-  result.meets_target = target.is_rate ? static_cast<double>(result.stream.size()) <= target.bytes : result.psnr >= target.psnr;
-  return result;
-}
 
 StatusOr<ZeroLevelStream> CodeZeroLevel(const TriangleMesh& mesh, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                         const SearchEffort& effort) {

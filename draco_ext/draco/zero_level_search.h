@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "draco/rate_control.h"
-#include "draco/zero_level.h"
+#include "draco/zero_level_steps.h"
 #include "lacerta/mesh.h"
 #include "lacerta/surface_distance.h"
 #include "remesh/simplify.h"
@@ -14,20 +14,6 @@
 namespace lacerta {
 
 class ZeroLevelSearch;
-
-struct ZeroLevelStream {
-  Bytes stream;
-  BaseCoding coding = BaseCoding::kStock;  // of the stream
-  TriangleMesh mesh;   // as decoded
-  double distance = 0;  // d_S to the input, model units
-  double psnr = 0;      // dB
-  bool meets_target = false;
-  int measurements = 0;  // of the surface distance that led to the stream
-};
-
-// A coded mesh with its distance, by that many samples, and whether it meets the target.
-ZeroLevelStream MeasuredZeroLevel(CodedZeroLevel coded, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
-                                  const SurfaceDistanceOptions& samples = SurfaceDistanceOptions::RmsOnly());
 
 // The best zero-level stream found: fewest bytes at a PSNR, highest PSNR at a number of bytes, over numbers of triangles and steps
 // of the lattice; where nothing meets the target, the nearest. mesh: any that passed cleaning. Fails as EncodeZeroLevel does.
