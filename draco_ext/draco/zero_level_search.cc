@@ -117,6 +117,7 @@ class ZeroLevelSearch {
  private:
   static constexpr size_t kMostSamples = 80000;
   static constexpr double kSamplesPerTriangle = 4;
+  static constexpr size_t kMostTrianglesAtATime = 20'000;  // beyond, memory counts for more than time
   // By which the numbers of triangles differ that are compared.
   static constexpr double kWideRatio = 1.25, kNarrowRatio = 1.1;
   static constexpr int kMostMoves = 4;

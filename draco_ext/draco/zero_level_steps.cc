@@ -1,13 +1,13 @@
 #include "draco/zero_level_steps.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "draco/candidate_search.h"
 #include "draco/decoded_distance.h"
-#include "draco/for_each_candidate.h"
+#include "geometry/for_each_branch.h"
 #include "remesh/rate_model.h"
 
 namespace lacerta {
@@ -172,24 +172,28 @@ StatusOr<ZeroLevelTrial> TrySteps(const ResolvedTarget& target, const SurfaceDis
   return trial;
 }
 
-// Rounding makes bytes and distance jump a little with the step: several steps are tried, to both sides of what seems right, and judged by
-// few samples first.
+// Rounding makes bytes and distance jump a little with the step: several steps are tried near what seems right, and judged by few samples first. Small meshes
+// have many tries, two at a time to both sides of it; large ones have few, each of which is to learn from the last.
 StatusOr<FinishedZeroLevel> FinishSteps(const ResolvedTarget& target, const SurfaceDistanceMeter& meter, const ZeroLevelCandidate& candidate, double step, int num_tries) {
-  constexpr int kAtATime = 2;
   constexpr double kFirst = 0.03, kNarrow = 0.006, kWide = 0.015;  // to each side, as shares of the step
+  constexpr double kJitter = 0.02;
+  const bool in_pairs = candidate.num_triangles() < 2000;
   const int descent_rounds = candidate.num_triangles() < 5000 ? 3 : 2;
   StepSearch search(target, meter, candidate);
-  for (int i = 0; i < num_tries || (!search.meets_target() && i < 2 * num_tries); i += kAtATime) {
-    if (i > 0 && search.IsOutOfReach()) break;
-    const double spread = i == 0 ? kFirst : i % 4 == 0 ? kNarrow : kWide;
-    const std::array<double, kAtATime> steps = {step * (1 + spread), step * (1 - spread)};
-    std::array<StatusOr<Coding>, kAtATime> codings = {Coding(), Coding()};
-    const auto code = [&](size_t k) { codings[k] = candidate.Code(steps[k], descent_rounds, CodingEffort::kFull, target.base_coding); };
-    ForEachCandidate(candidate.num_triangles() <= kMostTrianglesAtATime, kAtATime, code);
+  for (int i = 0; i < num_tries || (!search.meets_target() && i < 2 * num_tries);) {
+    if (i > 1 && search.IsOutOfReach()) break;
+    std::vector<double> steps = {i == 0 ? step : step * (1 + kJitter * ((i - 1) % 3 - 1))};
+    if (in_pairs) {
+      const double spread = i == 0 ? kFirst : i % 4 == 2 ? kWide : kNarrow;
+      steps = {step * (1 + spread), step * (1 - spread)};
+    }
+    std::vector<StatusOr<Coding>> codings(steps.size(), Coding());
+    ForEachBranch(steps.size(), [&](size_t k) { codings[k] = candidate.Code(steps[k], descent_rounds, CodingEffort::kFull, target.base_coding); });
     for (StatusOr<Coding>& coding : codings) {
       LACERTA_RETURN_IF_ERROR(coding.status());
       step = search.Take(std::move(coding).value());
     }
+    i += static_cast<int>(steps.size());
   }
   return search.Best();
 }

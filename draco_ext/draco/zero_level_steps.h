@@ -27,9 +27,6 @@ struct ZeroLevelStream {
 ZeroLevelStream MeasuredZeroLevel(CodedZeroLevel coded, const SurfaceDistanceMeter& meter, const ResolvedTarget& target,
                                   const SurfaceDistanceOptions& samples = SurfaceDistanceOptions::RmsOnly());
 
-// Candidates and codings of meshes up to that size are made in parallel; beyond it memory counts for more than time.
-inline constexpr size_t kMostTrianglesAtATime = 20'000;
-
 // What a mesh promises, by the samples of its fit.
 struct ZeroLevelTrial {
   size_t num_triangles = 0;
