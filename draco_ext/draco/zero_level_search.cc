@@ -172,7 +172,6 @@ class ZeroLevelSearch {
       return Status();
     }
     sizes.erase(std::remove_if(sizes.begin(), sizes.end(), [&](uint32_t size) { return tried_.count(size) != 0; }), sizes.end());
-    sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
     if (sizes.empty()) return Status();
     std::vector<TriangleMesh> meshes;
     meshes.reserve(sizes.size());
@@ -259,18 +258,15 @@ class ZeroLevelSearch {
     return Clamped(SimplifiedSize(sequence_, meter_, std::sqrt(kUsualGain * distortion_), kSizeSamples, kTolerance));
   }
 
-  // More steps are tried where that costs little.
   StatusOr<ZeroLevelStream> FinishBest() {
     ZeroLevelCandidate& candidate = *best_candidate_;
     constexpr int kFitRounds = 2;
-    const size_t triangles = candidate.num_triangles();
-    const int usual_tries = triangles < 2000 ? 8 : triangles < 5000 ? 6 : 4;
-    TakeSamples(8, std::max(triangles, FewestSamples(mesh_)));
+    TakeSamples(8, std::max(candidate.num_triangles(), FewestSamples(mesh_)));
     const double added = target_.is_rate ? candidate.fit_distortion() : distortion_ / bias_ - candidate.fit_distortion();
     candidate.FitForRate(std::max(added, 0.05 * candidate.fit_distortion()), kFitRounds);
     const double step = tried_.at(best_).step;
     if (target_.base_coding == BaseCoding::kStock) candidate.FitForStream(step);
-    LACERTA_ASSIGN_OR_RETURN(FinishedZeroLevel finished, FinishSteps(target_, meter_, candidate, step, std::max(2, static_cast<int>(std::lround(tries_ * usual_tries)))));
+    LACERTA_ASSIGN_OR_RETURN(FinishedZeroLevel finished, FinishSteps(target_, meter_, candidate, step, tries_));
     bias_ = finished.bias;
     return std::move(finished.stream);
   }

@@ -81,6 +81,15 @@ Status TryRate(double bytes, double least_distortion, BaseCoding base_coding, Ze
   return Status();
 }
 
+// What is tried after i steps, near the one that seems right: of many tries two at a time, to both sides of it; of few a single one, since each is to learn
+// from the last.
+std::vector<double> StepsNear(double step, int i, bool in_pairs) {
+  constexpr double kFirst = 0.03, kNarrow = 0.006, kWide = 0.015, kJitter = 0.02;  // shares of the step
+  if (!in_pairs) return {i == 0 ? step : step * (1 + kJitter * ((i - 1) % 3 - 1))};
+  const double spread = i == 0 ? kFirst : i % 4 == 2 ? kWide : kNarrow;
+  return {step * (1 + spread), step * (1 - spread)};
+}
+
 // What the codings of one mesh led to so far.
 class StepSearch {
  public:
@@ -172,21 +181,18 @@ StatusOr<ZeroLevelTrial> TrySteps(const ResolvedTarget& target, const SurfaceDis
   return trial;
 }
 
-// Rounding makes bytes and distance jump a little with the step: several steps are tried near what seems right, and judged by few samples first. Small meshes
-// have many tries, two at a time to both sides of it; large ones have few, each of which is to learn from the last.
-StatusOr<FinishedZeroLevel> FinishSteps(const ResolvedTarget& target, const SurfaceDistanceMeter& meter, const ZeroLevelCandidate& candidate, double step, int num_tries) {
-  constexpr double kFirst = 0.03, kNarrow = 0.006, kWide = 0.015;  // to each side, as shares of the step
-  constexpr double kJitter = 0.02;
-  const bool in_pairs = candidate.num_triangles() < 2000;
-  const int descent_rounds = candidate.num_triangles() < 5000 ? 3 : 2;
+// Rounding makes bytes and distance jump a little with the step: several steps are tried near what seems right, more of them where that costs little, and
+// judged by few samples first.
+StatusOr<FinishedZeroLevel> FinishSteps(const ResolvedTarget& target, const SurfaceDistanceMeter& meter, const ZeroLevelCandidate& candidate, double step, double tries) {
+  const size_t triangles = candidate.num_triangles();
+  const bool in_pairs = triangles < 2000;
+  const int usual_tries = in_pairs ? 8 : triangles < 5000 ? 6 : 4;
+  const int num_tries = std::max(2, static_cast<int>(std::lround(tries * usual_tries)));
+  const int descent_rounds = triangles < 5000 ? 3 : 2;
   StepSearch search(target, meter, candidate);
   for (int i = 0; i < num_tries || (!search.meets_target() && i < 2 * num_tries);) {
     if (i > 1 && search.IsOutOfReach()) break;
-    std::vector<double> steps = {i == 0 ? step : step * (1 + kJitter * ((i - 1) % 3 - 1))};
-    if (in_pairs) {
-      const double spread = i == 0 ? kFirst : i % 4 == 2 ? kWide : kNarrow;
-      steps = {step * (1 + spread), step * (1 - spread)};
-    }
+    const std::vector<double> steps = StepsNear(step, i, in_pairs);
     std::vector<StatusOr<Coding>> codings(steps.size(), Coding());
     ForEachBranch(steps.size(), [&](size_t k) { codings[k] = candidate.Code(steps[k], descent_rounds, CodingEffort::kFull, target.base_coding); });
     for (StatusOr<Coding>& coding : codings) {

@@ -47,8 +47,8 @@ struct FinishedZeroLevel {
   double bias = 1;  // as TrySteps takes it
 };
 
-// The best of about `num_tries` codings, measured in full where they may be that. step: to begin with. Fails as EncodeLatticeMesh does.
-StatusOr<FinishedZeroLevel> FinishSteps(const ResolvedTarget& target, const SurfaceDistanceMeter& meter, const ZeroLevelCandidate& candidate, double step, int num_tries);
+// The best of some codings, measured in full where they may be that. step: to begin with. tries: SearchEffort::zero_level_tries. Fails as EncodeLatticeMesh does.
+StatusOr<FinishedZeroLevel> FinishSteps(const ResolvedTarget& target, const SurfaceDistanceMeter& meter, const ZeroLevelCandidate& candidate, double step, double tries);
 
 }  // namespace lacerta
 

@@ -30,7 +30,7 @@ TEST_F(ZeroLevelStepsTest, MeetsAPsnrClosely) {
   const ResolvedTarget target = Below(2);
   const ZeroLevelTrial trial = TrySteps(target, meter_, 1, &candidate_).value();
   EXPECT_TRUE(trial.meets);
-  const FinishedZeroLevel finished = FinishSteps(target, meter_, candidate_, trial.step, 6).value();
+  const FinishedZeroLevel finished = FinishSteps(target, meter_, candidate_, trial.step, 1).value();
   EXPECT_TRUE(finished.stream.meets_target);
   EXPECT_GE(finished.stream.psnr, target.psnr);
   EXPECT_LT(finished.stream.psnr, target.psnr + 0.3);
@@ -43,7 +43,7 @@ TEST_F(ZeroLevelStepsTest, MeetsAPsnrClosely) {
 TEST_F(ZeroLevelStepsTest, FillsANumberOfBytes) {
   const ResolvedTarget target{true, 1200, 0};
   const ZeroLevelTrial trial = TrySteps(target, meter_, 1, &candidate_).value();
-  const FinishedZeroLevel finished = FinishSteps(target, meter_, candidate_, trial.step, 6).value();
+  const FinishedZeroLevel finished = FinishSteps(target, meter_, candidate_, trial.step, 1).value();
   EXPECT_TRUE(finished.stream.meets_target);
   EXPECT_LE(finished.stream.stream.size(), 1200u);
   EXPECT_GE(finished.stream.stream.size(), 1100u);
@@ -65,7 +65,7 @@ TEST_F(ZeroLevelStepsTest, NoStepMeetsWhatTheMeshMisses) {
   const ZeroLevelTrial trial = TrySteps(target, meter_, 1, &candidate_).value();
   EXPECT_FALSE(trial.meets);
   EXPECT_GT(trial.score, 1e8);
-  const FinishedZeroLevel finished = FinishSteps(target, meter_, candidate_, trial.step, 6).value();
+  const FinishedZeroLevel finished = FinishSteps(target, meter_, candidate_, trial.step, 1).value();
   EXPECT_FALSE(finished.stream.meets_target);
   EXPECT_GT(finished.stream.psnr, target.psnr - 1.5) << "but comes near";
 }
