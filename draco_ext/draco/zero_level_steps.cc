@@ -185,9 +185,10 @@ StatusOr<ZeroLevelTrial> TrySteps(const ResolvedTarget& target, const SurfaceDis
 // judged by few samples first.
 StatusOr<FinishedZeroLevel> FinishSteps(const ResolvedTarget& target, const SurfaceDistanceMeter& meter, const ZeroLevelCandidate& candidate, double step, double tries) {
   const size_t triangles = candidate.num_triangles();
-  const bool in_pairs = triangles < 2000;
-  const int usual_tries = in_pairs ? 8 : triangles < 5000 ? 6 : 4;
+  const bool is_small = triangles < 2000;
+  const int usual_tries = is_small ? 8 : triangles < 5000 ? 6 : 4;
   const int num_tries = std::max(2, static_cast<int>(std::lround(tries * usual_tries)));
+  const bool in_pairs = is_small && num_tries >= usual_tries;
   const int descent_rounds = triangles < 5000 ? 3 : 2;
   StepSearch search(target, meter, candidate);
   for (int i = 0; i < num_tries || (!search.meets_target() && i < 2 * num_tries);) {
