@@ -1,16 +1,19 @@
 // Writes those seeds that no golden stream is: fuzz_seeds FOLDER, where FOLDER is tests/fuzz/seeds. To be run anew after a change of the stream.
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "gltf/skinned_asset.h"  // first: its enumerators have names that those below have globally
 #include "draco/attributed_stream.h"
-#include "gltf/test_assets.h"
+#include "gltf/torus_asset.h"
 #include "lacerta/attributed_base.h"
 #include "shapes/attributed_levels.h"
 #include "shapes/attributed_shapes.h"
+#include "shapes/shapes.h"
 
 namespace {
 
@@ -48,6 +51,32 @@ Bytes Animated(const Bytes& skinned) {
   return builder.Glb();
 }
 
+// An asset of these primitives as a stream of few levels.
+Bytes Progressive(const std::vector<VertexSoup>& primitives, int quality_layers, Fallback fallback) {
+  testing::AssetBuilder builder;
+  Json& json = builder.document().json;
+  json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", Json::array()}}}}, {"nodes", Json::array()}, {"meshes", Json::array()}};
+  Json drawn = Json::array();
+  for (const VertexSoup& soup : primitives) {
+    drawn.push_back(testing::AddSoup(soup, &builder));
+    drawn.back().erase("material");
+  }
+  builder.AddMesh("m", std::move(drawn));
+  PackOptions options;
+  options.encode.target.value = 45;
+  options.encode.levels = LevelChoice::kAlways;
+  options.encode.quality_layers = quality_layers;
+  options.fallback = fallback;
+  return PackGltf(builder.Glb(), options).value().glb;
+}
+
+VertexSoup BumpyTorus() {
+  const TriangleMesh torus = shapes::Torus(31, 21);  // odd, so that it is not taken for a subdivided one
+  VertexSoup soup{torus.positions, torus.triangles, {}};
+  for (Vec3f& p : soup.positions) p *= 1 + 0.05f * std::sin(9 * p.x) * std::cos(7 * p.y);
+  return soup;
+}
+
 // As c_abi_fuzzer reads it: choice, length of a piece, counts of groups and attributes, lengths of the bases, the stream.
 Bytes GroupsForC() {
   AttributedSemiRegularMesh mesh = shapes::SubdividedSoups(
@@ -76,5 +105,9 @@ int main(int argc, char** argv) {
   bool written = Write(folder / "gltf_skin_fuzzer" / "skin.glb", Animated(plain));
   written = Write(folder / "gltf_skin_fuzzer" / "skin_of_few_triangles.glb", Animated(few)) && written;
   written = Write(folder / "c_abi_fuzzer" / "groups", GroupsForC()) && written;
+  const std::filesystem::path assets = folder / "glb_extension_fuzzer";
+  written = Write(assets / "levels.glb", Progressive({BumpyTorus()}, 1, Fallback::kDraco)) && written;
+  written = Write(assets / "levels_and_layers.glb", Progressive({BumpyTorus()}, 3, Fallback::kPlain)) && written;
+  written = Write(assets / "levels_of_groups.glb", Progressive(shapes::HalvedTorus(24, 12), 1, Fallback::kDraco)) && written;
   return written ? 0 : 1;
 }
