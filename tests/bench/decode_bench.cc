@@ -10,26 +10,23 @@
 // blocks to the system, and taking them anew, page by page, costs more than a whole decoding does. "whole_anew" and
 // "draco_anew" map every block of more than 128 kB anew, as a first decoding does.
 #include <benchmark/benchmark.h>
-#include <draco/compression/decode.h>
-#include <draco/compression/encode.h>
 #include <malloc.h>
 #ifdef LACERTA_HAVE_MESHOPTIMIZER
 #include <meshoptimizer.h>
 #endif
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "bench/heap_meter.h"
+#include "bench/other_codecs.h"
 #include "draco/base_mesh_codec.h"
-#include "draco/mesh_conversion.h"
 #include "lacerta/codec.h"
 #include "lacerta/file_io.h"
 #include "lacerta/mesh_file.h"
@@ -38,7 +35,7 @@
 namespace lacerta {
 namespace {
 
-constexpr int kDracoSpeed = 0, kBits = 12;
+constexpr int kBits = 12;  // of the coders beside ours
 
 template <typename T>
 T Must(StatusOr<T> result, const std::string& what) {
@@ -131,94 +128,19 @@ void DecodeLevels(benchmark::State& state, const std::string& name, const Bytes&
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(size.vertices));
 }
 
-Bytes EncodeStock(const TriangleMesh& mesh, const std::string& name) {
-  draco::Encoder encoder;
-  encoder.SetSpeedOptions(kDracoSpeed, kDracoSpeed);
-  encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, kBits);
-  draco::EncoderBuffer buffer;
-  const draco::Status status = encoder.EncodeMeshToBuffer(*ToDracoMesh(mesh), &buffer);
-  if (!status.ok()) {
-    std::fprintf(stderr, "%s: %s\n", name.c_str(), status.error_msg());
-    std::exit(1);
-  }
-  return Bytes(buffer.data(), buffer.data() + buffer.size());
-}
-
 void DecodeStock(benchmark::State& state, const std::string& name, const Bytes& stream, Memory memory) {
   const Size size = RunAndMeasureMemory(state, memory, [&] {
-    draco::DecoderBuffer buffer;
-    buffer.Init(reinterpret_cast<const char*>(stream.data()), stream.size());
-    draco::Decoder decoder;
-    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) {
-      std::fprintf(stderr, "%s: %s\n", name.c_str(), decoded.status().error_msg());
-      std::exit(1);
-    }
-    return Size{decoded.value()->num_points(), decoded.value()->num_faces()};
+    const std::unique_ptr<draco::Mesh> decoded = Must(DecodeByDraco(stream), name);
+    return Size{decoded->num_points(), static_cast<size_t>(decoded->num_faces())};
   });
   state.counters["bytes"] = static_cast<double>(stream.size());
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(size.triangles));
 }
 
 #ifdef LACERTA_HAVE_MESHOPTIMIZER
-using Lattice = std::array<uint16_t, 4>;  // the last one is not used
-
-struct MeshoptStreams {
-  size_t num_vertices = 0, num_triangles = 0;
-  float step = 0;
-  Vec3f corner;
-  Bytes vertices, indices;
-};
-
-MeshoptStreams EncodeMeshopt(TriangleMesh mesh) {
-  MeshoptStreams coded;
-  coded.num_vertices = mesh.positions.size();
-  coded.num_triangles = mesh.triangles.size();
-  const size_t num_indices = 3 * coded.num_triangles;
-  uint32_t* const indices = mesh.triangles[0].data();
-  meshopt_optimizeVertexCache(indices, indices, num_indices, coded.num_vertices);
-  meshopt_optimizeVertexFetch(mesh.positions.data(), indices, num_indices, mesh.positions.data(), coded.num_vertices,
-                              sizeof(Vec3f));
-  Vec3f low = mesh.positions[0], high = low;
-  for (const Vec3f& p : mesh.positions) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  const Vec3f extent = high - low;
-  coded.corner = low;
-  coded.step = std::max({extent.x, extent.y, extent.z}) / ((1 << kBits) - 1);
-  std::vector<Lattice> lattice;
-  for (const Vec3f& p : mesh.positions) {
-    const Vec3f q = (p - low) * (1 / coded.step);
-    lattice.push_back(
-        {static_cast<uint16_t>(q.x + 0.5f), static_cast<uint16_t>(q.y + 0.5f), static_cast<uint16_t>(q.z + 0.5f), 0});
-  }
-  coded.vertices.resize(meshopt_encodeVertexBufferBound(coded.num_vertices, sizeof(Lattice)));
-  coded.vertices.resize(meshopt_encodeVertexBuffer(coded.vertices.data(), coded.vertices.size(), lattice.data(),
-                                                   coded.num_vertices, sizeof(Lattice)));
-  coded.indices.resize(meshopt_encodeIndexBufferBound(num_indices, coded.num_vertices));
-  coded.indices.resize(meshopt_encodeIndexBuffer(coded.indices.data(), coded.indices.size(), indices, num_indices));
-  return coded;
-}
-
 void DecodeMeshopt(benchmark::State& state, const std::string& name, const MeshoptStreams& coded, Memory memory) {
   const Size size = RunAndMeasureMemory(state, memory, [&] {
-    std::vector<Lattice> lattice(coded.num_vertices);
-    TriangleMesh mesh;
-    mesh.positions.reserve(coded.num_vertices);
-    mesh.triangles.resize(coded.num_triangles);
-    if (meshopt_decodeVertexBuffer(lattice.data(), coded.num_vertices, sizeof(Lattice), coded.vertices.data(),
-                                   coded.vertices.size()) != 0 ||
-        meshopt_decodeIndexBuffer(mesh.triangles[0].data(), 3 * coded.num_triangles, sizeof(uint32_t),
-                                  coded.indices.data(), coded.indices.size()) != 0) {
-      std::fprintf(stderr, "%s: meshoptimizer does not decode what it coded\n", name.c_str());
-      std::exit(1);
-    }
-    for (const Lattice& q : lattice) {
-      mesh.positions.push_back(coded.corner +
-                               Vec3f{static_cast<float>(q[0]), static_cast<float>(q[1]), static_cast<float>(q[2])} *
-                                   coded.step);
-    }
+    const TriangleMesh mesh = Must(DecodeByMeshopt(coded), name);
     return Size{mesh.positions.size(), mesh.triangles.size()};
   });
   state.counters["bytes"] = static_cast<double>(coded.vertices.size() + coded.indices.size());
@@ -241,11 +163,11 @@ void RegisterStream(const std::string& name, const Bytes& stream) {
 }
 
 void RegisterStock(const std::string& name, const TriangleMesh& mesh) {
-  const Bytes stream = EncodeStock(mesh, name);
+  const Bytes stream = Must(EncodeByDraco(mesh, kBits), name);
   Register("draco", name, [=](benchmark::State& state) { DecodeStock(state, name, stream, Memory::kAtHand); });
   Register("draco_anew", name, [=](benchmark::State& state) { DecodeStock(state, name, stream, Memory::kAnew); });
 #ifdef LACERTA_HAVE_MESHOPTIMIZER
-  const MeshoptStreams coded = EncodeMeshopt(mesh);
+  const MeshoptStreams coded = EncodeByMeshopt(mesh, kBits);
   Register("meshopt", name, [=](benchmark::State& state) { DecodeMeshopt(state, name, coded, Memory::kAtHand); });
   Register("meshopt_anew", name, [=](benchmark::State& state) { DecodeMeshopt(state, name, coded, Memory::kAnew); });
 #endif
