@@ -4,14 +4,13 @@
 // is the look at all coefficients before that.
 #include <benchmark/benchmark.h>
 
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "baselines/remeshes.h"
+#include "bench/must.h"
 #include "encoder/allocation/bit_allocation.h"
 #include "encoder/allocation/set_statistics.h"
 #include "encoder/allocation/subband_weights.h"
@@ -25,13 +24,6 @@ namespace {
 constexpr uint32_t kBaseVertices = 200;
 constexpr int kLevels = 5;
 constexpr double kBitsPerSample = 0.5;
-
-template <typename T>
-T Must(StatusOr<T> result, const std::string& what) {
-  if (result.ok()) return std::move(result).value();
-  std::fprintf(stderr, "%s: %s\n", what.c_str(), result.status().message().c_str());
-  std::exit(1);
-}
 
 void Register(const std::string& path) {
   const CleanedMesh input = Must(Clean(Must(ReadMeshFile(path), path)), path);

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "bench/must.h"
 #include "lacerta/decoder.h"
 #include "draco/base_mesh_codec.h"
 #include "encoder/compact_base_encoder.h"
@@ -25,13 +26,6 @@
 
 namespace lacerta {
 namespace {
-
-template <typename T>
-T Must(StatusOr<T> result, const std::string& what) {
-  if (result.ok()) return std::move(result).value();
-  std::fprintf(stderr, "%s: %s\n", what.c_str(), result.status().message().c_str());
-  std::exit(1);
-}
 
 void Report(const std::string& name, const TriangleMesh& mesh, int bits) {
   const auto [low, high] = BoundsOf(mesh.positions);

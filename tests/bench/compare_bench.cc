@@ -14,6 +14,7 @@
 #include <string>
 #include <utility>
 
+#include "bench/must.h"
 #include "bench/other_codecs.h"
 #include "draco/base_mesh_codec.h"
 #include "lacerta/codec.h"
@@ -22,13 +23,6 @@
 
 namespace lacerta {
 namespace {
-
-template <typename T>
-T Must(StatusOr<T> result, const std::string& what) {
-  if (result.ok()) return std::move(result).value();
-  std::fprintf(stderr, "%s: %s\n", what.c_str(), result.status().message().c_str());
-  std::exit(1);
-}
 
 struct Input {
   explicit Input(const std::string& path)

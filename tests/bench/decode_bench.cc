@@ -16,7 +16,6 @@
 #endif
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -25,6 +24,7 @@
 #include <utility>
 
 #include "bench/heap_meter.h"
+#include "bench/must.h"
 #include "bench/other_codecs.h"
 #include "draco/base_mesh_codec.h"
 #include "lacerta/codec.h"
@@ -36,13 +36,6 @@ namespace lacerta {
 namespace {
 
 constexpr int kBits = 12;  // of the coders beside ours
-
-template <typename T>
-T Must(StatusOr<T> result, const std::string& what) {
-  if (result.ok()) return std::move(result).value();
-  std::fprintf(stderr, "%s: %s\n", what.c_str(), result.status().message().c_str());
-  std::exit(1);
-}
 
 struct Size {
   size_t vertices = 0, triangles = 0;

@@ -8,14 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bench/must.h"
 #include "draco/base_mesh_codec.h"
 #include "draco/pierced_base.h"
 #include "draco/zero_level.h"
@@ -46,13 +45,6 @@ namespace {
 constexpr double kPsnr = 70;      // of the stream that the stages of one stream code
 constexpr int kNumLevels = 4;
 constexpr uint32_t kInputOverBase = 128;  // vertices: four levels above it have twice as many as the input
-
-template <typename T>
-T Must(StatusOr<T> result, const std::string& what) {
-  if (result.ok()) return std::move(result).value();
-  std::fprintf(stderr, "%s: %s\n", what.c_str(), result.status().message().c_str());
-  std::exit(1);
-}
 
 // Runs `stage`, which returns what it makes, over and over. num_bytes: of that, or 0.
 template <typename Stage>
