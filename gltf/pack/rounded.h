@@ -7,23 +7,12 @@
 #include <limits>
 #include <vector>
 
-#include "document/draco_encode.h"
 #include "document/primitive.h"
-#include "lacerta/gltf.h"
 #include "lacerta/status.h"
 #include "pack/family_meter.h"
+#include "pack/rounded_family.h"
 
 namespace lacerta {
-
-struct RoundedFamily {
-  std::vector<DracoEncoded> members;                  // in the order of the primitives
-  std::vector<DracoPrecision> precisions;             // parallel
-  std::vector<std::vector<AttributeReport>> reports;  // of their attributes but POSITION; errors are the family's
-  double error = 0.0;                                 // d_S, mesh units
-  // Parallel to the attributes of FamilyMeter::original: total RMS of normals and tangents, or the target where that is
-  // larger; infinity for others. Empty where the surface could not be measured.
-  std::vector<double> everywhere;
-};
 
 // `primitives` are the meter's or, if `own_errors` (against the meter's, as measured) is given, a simplification of
 // these. All get one lattice of positions and one step for each attribute. Which is cheapest is forecast triangle by
