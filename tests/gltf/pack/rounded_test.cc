@@ -7,30 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "decoder/smooth_normals.h"
-#include "gltf/test_assets.h"
+#include "gltf/pack/textured_ball.h"
 #include "lacerta/surface_distance.h"
 
 namespace lacerta {
 namespace {
 
-// A ball with a texture that goes `repeats` times around it, to and fro from one vertex to the next, so that no values make up for vertices that slide.
-Primitive Textured(float repeats) {
-  const TriangleMesh mesh = testing::WavySphere(48, 72);
-  Primitive primitive;
-  primitive.num_vertices = mesh.positions.size();
-  primitive.triangles = mesh.triangles;
-  std::vector<float> texture;
-  for (size_t v = 0; v < mesh.positions.size(); ++v) {
-    const Vec3f& p = mesh.positions[v];
-    const float fro = v % 2 == 0 ? 0.1f : 0.0f;
-    texture.insert(texture.end(), {repeats * (p.x + fro), repeats * (p.y - fro)});
-  }
-  primitive.attributes = {{"POSITION", MakeFloatAccessor(mesh.positions)},
-                          {"NORMAL", MakeFloatAccessor(SmoothNormals(mesh.positions, mesh.triangles))},
-                          {"TEXCOORD_0", MakeFloatAccessor(texture, 2)}};
-  return primitive;
-}
+using testing::TexturedBall;
 
 double Texels(uint64_t) { return 1024.0; }
 
@@ -48,7 +31,7 @@ double StepOf(const RoundedFamily& family) {
 }
 
 TEST(Rounded, IsGivenUpWhereItTakesFarMore) {
-  Primitive primitive = Textured(1.0f);
+  Primitive primitive = TexturedBall(1.0f);
   primitive.attributes.resize(1);  // values of others descend to far less than what is compared
   const FamilyMeter meter({&primitive}, DistanceOfPsnr(50.0, BoundingBoxDiagonal(Surface(primitive))), {}, 1024, [](size_t, uint64_t set) { return Texels(set); });
   const auto within = [&](uint64_t most_bytes) { return RoundFamily(meter.primitives(), meter, nullptr, {}, nullptr, most_bytes); };
@@ -69,7 +52,7 @@ TEST(Rounded, IsGivenUpWhereItTakesFarMore) {
 }
 
 TEST(Rounded, IsGivenUpByAllThatHasATarget) {
-  const Primitive primitive = Textured(1.0f);
+  const Primitive primitive = TexturedBall(1.0f);
   const FamilyMeter meter({&primitive}, DistanceOfPsnr(50.0, BoundingBoxDiagonal(Surface(primitive))), {}, 1024, [](size_t, uint64_t set) { return Texels(set); });
   const auto free = RoundFamily(meter.primitives(), meter);
   ASSERT_TRUE(free.ok()) << free.status().message();
@@ -88,11 +71,11 @@ TEST(Rounded, IsGivenUpByAllThatHasATarget) {
 
 TEST(Rounded, PositionsThatSlideUnderTheTextureGetMoreBits) {
   const TexelScale scale = [](size_t, uint64_t set) { return Texels(set); };
-  const double diagonal = BoundingBoxDiagonal(Surface(Textured(1.0f)));
+  const double diagonal = BoundingBoxDiagonal(Surface(TexturedBall(1.0f)));
   const double error = DistanceOfPsnr(50.0, diagonal);
   int bits_before = 0;
   for (const float repeats : {0.05f, 4.0f}) {
-    const Primitive primitive = Textured(repeats);
+    const Primitive primitive = TexturedBall(repeats);
     const FamilyMeter meter({&primitive}, error, {}, 1024, scale);
     const auto rounded = RoundFamily(meter.primitives(), meter);
     ASSERT_TRUE(rounded.ok()) << rounded.status().message();
@@ -218,7 +201,7 @@ TEST(Rounded, ErrorsThatNoForecastTellsAreMeasured) {
 
 // Colors of bytes stay as they are, but slide along with the positions below them, of which the forecast knows nothing.
 TEST(Rounded, PositionsGetMoreBitsForColorsThatStayExact) {
-  Primitive primitive = Textured(1.0f);
+  Primitive primitive = TexturedBall(1.0f);
   AccessorData colors;
   colors.type = ComponentType::kUint8;
   colors.normalized = true;
@@ -245,7 +228,7 @@ TEST(Rounded, PositionsGetMoreBitsForColorsThatStayExact) {
 }
 
 TEST(Rounded, SurfacesWithoutAreaAreHeldToTheirVertices) {
-  Primitive primitive = Textured(1.0f);
+  Primitive primitive = TexturedBall(1.0f);
   primitive.triangles = {{0, 0, 1}};
   const FamilyMeter meter({&primitive}, 0.01, {}, 1024, [](size_t, uint64_t set) { return Texels(set); });
   EXPECT_FALSE(meter.status().ok());
