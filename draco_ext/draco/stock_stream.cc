@@ -17,6 +17,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "draco/mesh_conversion.h"
 
@@ -85,6 +86,21 @@ Status CheckCounts(const Counts& counts, size_t stream_size, const DecodeLimits&
 
 void SetEdgebreaker(int method, draco::ExpertEncoder* encoder) { encoder->options().SetGlobalInt("edgebreaker_method", method); }
 
+Status CheckValences(const draco::Mesh& mesh) {
+  constexpr uint32_t kMost = 1 << 17;
+  if (mesh.num_faces() <= kMost) return {};
+  const draco::PointAttribute& positions = *mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION);
+  std::vector<uint32_t> valences(positions.size(), 0);
+  for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f) {
+    for (const draco::PointIndex& point : mesh.face(f)) {
+      if (++valences[positions.mapped_index(point).value()] > kMost) {
+        return Unsupported("a vertex of more than " + std::to_string(kMost) + " triangles takes edgebreaker too long");
+      }
+    }
+  }
+  return {};
+}
+
 StatusOr<Bytes> EncodeIntegerPositions(const draco::Mesh& mesh, int bits, const StockSettings& settings) {
   const int positions = mesh.GetNamedAttributeId(draco::GeometryAttribute::POSITION);
   draco::ExpertEncoder encoder(mesh);
@@ -92,6 +108,7 @@ StatusOr<Bytes> EncodeIntegerPositions(const draco::Mesh& mesh, int bits, const 
   const bool sequential = settings.connectivity == StockSettings::Connectivity::kSequential;
   encoder.SetEncodingMethod(sequential ? draco::MESH_SEQUENTIAL_ENCODING : draco::MESH_EDGEBREAKER_ENCODING);
   if (!sequential) {
+    LACERTA_RETURN_IF_ERROR(CheckValences(mesh));
     const bool valence = settings.connectivity == StockSettings::Connectivity::kEdgebreakerValence;
     SetEdgebreaker(valence ? draco::MESH_EDGEBREAKER_VALENCE_ENCODING : draco::MESH_EDGEBREAKER_STANDARD_ENCODING, &encoder);
   }

@@ -35,8 +35,13 @@ struct StockSettings {
 // How edgebreaker codes connectivity: a draco::MeshEdgebreakerConnectivityEncodingMethod. Draco 1.5.5 does not read what its SetEncodingSubmethod sets.
 void SetEdgebreaker(int method, draco::ExpertEncoder* encoder);
 
+// Whether edgebreaker can code the mesh in time: Draco's encoder goes around each vertex once for each of its triangles, which takes a second where these
+// are 100,000. kUnsupported where a vertex has more than 2^17.
+Status CheckValences(const draco::Mesh& mesh);
+
 // Codes a mesh whose positions are the integers 0 .. 2^bits - 1, held as floats; 1 <= bits <= 24. A decoder gets the
-// very integers back, in Draco's order of vertices and faces. The mesh must pass CheckEncodable.
+// very integers back, in Draco's order of vertices and faces. The mesh must pass CheckEncodable, and CheckValences for
+// edgebreaker.
 StatusOr<Bytes> EncodeIntegerPositions(const draco::Mesh& mesh, int bits, const StockSettings& settings);
 
 // Where a decoder puts the integers: p = origin + integer * (range / (2^bits - 1)), in float arithmetic.

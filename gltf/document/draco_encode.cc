@@ -174,6 +174,7 @@ StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive,
   const bool sequential = connectivity == Connectivity::kSequential;
   encoder.SetEncodingMethod(sequential ? draco::MESH_SEQUENTIAL_ENCODING : draco::MESH_EDGEBREAKER_ENCODING);
   if (!sequential) {
+    LACERTA_RETURN_IF_ERROR(CheckValences(mesh));
     SetEdgebreaker(connectivity == Connectivity::kValence ? draco::MESH_EDGEBREAKER_VALENCE_ENCODING : draco::MESH_EDGEBREAKER_STANDARD_ENCODING, &encoder);
   }
   for (size_t i = 0; i < primitive.attributes.size(); ++i) {

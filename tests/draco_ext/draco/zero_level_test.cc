@@ -13,6 +13,7 @@
 #include "common/position_prediction.h"
 #include "draco/base_mesh_codec.h"
 #include "draco_ext/draco/test_meshes.h"
+#include "shapes/base_meshes.h"
 
 namespace lacerta {
 namespace {
@@ -241,6 +242,16 @@ TEST(ZeroLevelTest, RefusesLatticesOfMoreThan22Bits) {
   EXPECT_EQ(EncodeLatticeMesh(mesh, CodingEffort::kQuick).status().code(), StatusCode::kInvalidData);
   mesh.lattice[1][0] -= 1;
   EXPECT_TRUE(EncodeLatticeMesh(mesh, CodingEffort::kQuick).ok());
+}
+
+// Draco's edgebreaker goes around a vertex once for each of its triangles.
+TEST(ZeroLevelTest, VerticesOfVeryManyTrianglesTakeNoEdgebreaker) {
+  for (const uint32_t sides : {60'000u, 140'000u}) {
+    const TriangleMesh fan = shapes::Fan(sides);
+    const CodedZeroLevel coded = EncodeZeroLevel(fan, 18).value();
+    EXPECT_EQ(coded.sequential, sides > 1 << 17);
+    EXPECT_EQ(coded.mesh.triangles.size(), fan.triangles.size());
+  }
 }
 
 TEST(ZeroLevelTest, RefusesBadInput) {
