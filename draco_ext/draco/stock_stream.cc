@@ -87,7 +87,7 @@ Status CheckCounts(const Counts& counts, size_t stream_size, const DecodeLimits&
 void SetEdgebreaker(int method, draco::ExpertEncoder* encoder) { encoder->options().SetGlobalInt("edgebreaker_method", method); }
 
 Status CheckValences(const draco::Mesh& mesh) {
-  constexpr uint32_t kMost = 1 << 17;
+  constexpr uint32_t kMost = 1 << 18;
   if (mesh.num_faces() <= kMost) return {};
   const draco::PointAttribute& positions = *mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION);
   std::vector<uint32_t> valences(positions.size(), 0);

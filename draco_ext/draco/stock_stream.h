@@ -35,8 +35,8 @@ struct StockSettings {
 // How edgebreaker codes connectivity: a draco::MeshEdgebreakerConnectivityEncodingMethod. Draco 1.5.5 does not read what its SetEncodingSubmethod sets.
 void SetEdgebreaker(int method, draco::ExpertEncoder* encoder);
 
-// Whether edgebreaker can code the mesh in time: Draco's encoder goes around each vertex once for each of its triangles, which takes a second where these
-// are 100,000. kUnsupported where a vertex has more than 2^17.
+// Whether edgebreaker can code the mesh in time: Draco's encoder goes around each vertex once for each of its triangles, which takes minutes where these
+// are a million. kUnsupported where a vertex has more than 2^18.
 Status CheckValences(const draco::Mesh& mesh);
 
 // Codes a mesh whose positions are the integers 0 .. 2^bits - 1, held as floats; 1 <= bits <= 24. A decoder gets the
