@@ -40,8 +40,8 @@ void SetEdgebreaker(int method, draco::ExpertEncoder* encoder);
 Status CheckValences(const draco::Mesh& mesh);
 
 // Codes a mesh whose positions are the integers 0 .. 2^bits - 1, held as floats; 1 <= bits <= 24. A decoder gets the
-// very integers back, in Draco's order of vertices and faces. The mesh must pass CheckEncodable, and CheckValences for
-// edgebreaker.
+// very integers back, in Draco's order of vertices and faces. The mesh must pass CheckEncodable.
+// Fails by edgebreaker where CheckValences does.
 StatusOr<Bytes> EncodeIntegerPositions(const draco::Mesh& mesh, int bits, const StockSettings& settings);
 
 // Where a decoder puts the integers: p = origin + integer * (range / (2^bits - 1)), in float arithmetic.
