@@ -202,8 +202,7 @@ class GroupEncoder {
   StatusOr<Bytes> EncodeBy(int method, const Predictions& predictions) const {
     draco::ExpertEncoder encoder(mesh_);
     encoder.SetSpeedOptions(0, 0);
-    encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
-    SetEdgebreaker(method, &encoder);
+    LACERTA_RETURN_IF_ERROR(SetEdgebreaker(mesh_, method, &encoder));
     LACERTA_RETURN_IF_ERROR(SetPredictions(predictions, &encoder));
     for (const MarkedLattice& l : lattices_) {
       encoder.SetAttributeExplicitQuantization(l.id, l.bits, static_cast<int>(l.mark.size()), l.mark.data(), l.MarkRange());

@@ -82,10 +82,6 @@ Status CheckCounts(const Counts& counts, size_t stream_size, const DecodeLimits&
   return {};
 }
 
-}  // namespace
-
-void SetEdgebreaker(int method, draco::ExpertEncoder* encoder) { encoder->options().SetGlobalInt("edgebreaker_method", method); }
-
 Status CheckValences(const draco::Mesh& mesh) {
   constexpr uint32_t kMost = 1 << 18;
   if (mesh.num_faces() <= kMost) return {};
@@ -101,16 +97,24 @@ Status CheckValences(const draco::Mesh& mesh) {
   return {};
 }
 
+}  // namespace
+
+Status SetEdgebreaker(const draco::Mesh& mesh, int method, draco::ExpertEncoder* encoder) {
+  encoder->SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
+  encoder->options().SetGlobalInt("edgebreaker_method", method);
+  return CheckValences(mesh);
+}
+
 StatusOr<Bytes> EncodeIntegerPositions(const draco::Mesh& mesh, int bits, const StockSettings& settings) {
   const int positions = mesh.GetNamedAttributeId(draco::GeometryAttribute::POSITION);
   draco::ExpertEncoder encoder(mesh);
   encoder.SetSpeedOptions(settings.speed, settings.speed);
-  const bool sequential = settings.connectivity == StockSettings::Connectivity::kSequential;
-  encoder.SetEncodingMethod(sequential ? draco::MESH_SEQUENTIAL_ENCODING : draco::MESH_EDGEBREAKER_ENCODING);
-  if (!sequential) {
-    LACERTA_RETURN_IF_ERROR(CheckValences(mesh));
+  if (settings.connectivity == StockSettings::Connectivity::kSequential) {
+    encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
+  } else {
     const bool valence = settings.connectivity == StockSettings::Connectivity::kEdgebreakerValence;
-    SetEdgebreaker(valence ? draco::MESH_EDGEBREAKER_VALENCE_ENCODING : draco::MESH_EDGEBREAKER_STANDARD_ENCODING, &encoder);
+    LACERTA_RETURN_IF_ERROR(
+        SetEdgebreaker(mesh, valence ? draco::MESH_EDGEBREAKER_VALENCE_ENCODING : draco::MESH_EDGEBREAKER_STANDARD_ENCODING, &encoder));
   }
   const std::array<float, 3> origin = {0.0f, 0.0f, 0.0f};
   const auto range = static_cast<float>((1 << bits) - 1);

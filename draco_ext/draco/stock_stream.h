@@ -32,16 +32,14 @@ struct StockSettings {
   int speed = 0;
 };
 
-// How edgebreaker codes connectivity: a draco::MeshEdgebreakerConnectivityEncodingMethod. Draco 1.5.5 does not read what its SetEncodingSubmethod sets.
-void SetEdgebreaker(int method, draco::ExpertEncoder* encoder);
-
-// Whether edgebreaker can code the mesh in time: Draco's encoder goes around each vertex once for each of its triangles, which takes minutes where these
-// are a million. kUnsupported where a vertex has more than 2^18.
-Status CheckValences(const draco::Mesh& mesh);
+// Has `mesh` coded by edgebreaker, in the way that a draco::MeshEdgebreakerConnectivityEncodingMethod is for connectivity. Draco 1.5.5 does not read what its
+// SetEncodingSubmethod sets. Draco's encoder goes around each vertex once for each of its triangles, which takes minutes where these are a million:
+// kUnsupported where a vertex has more than 2^18.
+Status SetEdgebreaker(const draco::Mesh& mesh, int method, draco::ExpertEncoder* encoder);
 
 // Codes a mesh whose positions are the integers 0 .. 2^bits - 1, held as floats; 1 <= bits <= 24. A decoder gets the
 // very integers back, in Draco's order of vertices and faces. The mesh must pass CheckEncodable.
-// Fails by edgebreaker where CheckValences does.
+// Fails where SetEdgebreaker does.
 StatusOr<Bytes> EncodeIntegerPositions(const draco::Mesh& mesh, int bits, const StockSettings& settings);
 
 // Where a decoder puts the integers: p = origin + integer * (range / (2^bits - 1)), in float arithmetic.

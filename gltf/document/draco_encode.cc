@@ -171,11 +171,12 @@ StatusOr<Bytes> EncodeStock(const draco::Mesh& mesh, const Primitive& primitive,
   draco::ExpertEncoder encoder(mesh);
   encoder.SetSpeedOptions(0, 0);
   LACERTA_RETURN_IF_ERROR(SetPredictions(coding.predictions, &encoder));
-  const bool sequential = connectivity == Connectivity::kSequential;
-  encoder.SetEncodingMethod(sequential ? draco::MESH_SEQUENTIAL_ENCODING : draco::MESH_EDGEBREAKER_ENCODING);
-  if (!sequential) {
-    LACERTA_RETURN_IF_ERROR(CheckValences(mesh));
-    SetEdgebreaker(connectivity == Connectivity::kValence ? draco::MESH_EDGEBREAKER_VALENCE_ENCODING : draco::MESH_EDGEBREAKER_STANDARD_ENCODING, &encoder);
+  if (connectivity == Connectivity::kSequential) {
+    encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
+  } else {
+    const bool valence = connectivity == Connectivity::kValence;
+    LACERTA_RETURN_IF_ERROR(
+        SetEdgebreaker(mesh, valence ? draco::MESH_EDGEBREAKER_VALENCE_ENCODING : draco::MESH_EDGEBREAKER_STANDARD_ENCODING, &encoder));
   }
   for (size_t i = 0; i < primitive.attributes.size(); ++i) {
     const Attribute& attribute = primitive.attributes[i];

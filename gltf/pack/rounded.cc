@@ -23,7 +23,6 @@ struct Trial {
   RoundingLevels levels;
   std::vector<double> rounded;  // forecast of what rounding does to each attribute, in the unit of its target
   RoundedFamily family;
-  uint64_t bytes = 0;
   bool is_measured = false;
   bool met = false;  // if measured
   SurfaceErrors errors;  // if measured and nothing else was against it
@@ -51,13 +50,13 @@ class FamilyRounder {
       LACERTA_ASSIGN_OR_RETURN(Trial* trial, Smallest(most_bytes));
       // What is decoded has all that was asked for and nothing smaller is expected: done.
       if (trial == nullptr || trial->is_measured) break;
-      if (static_cast<double>(trial->bytes) > kHopeless * static_cast<double>(most_bytes)) return TooLarge(trial->bytes);
-      if (best != nullptr && static_cast<double>(trial->bytes) > (1.0 - kWorthwhile) * static_cast<double>(best->bytes)) break;
+      if (static_cast<double>(trial->family.size()) > kHopeless * static_cast<double>(most_bytes)) return TooLarge(trial->family.size());
+      if (best != nullptr && static_cast<double>(trial->family.size()) > (1.0 - kWorthwhile) * static_cast<double>(best->family.size())) break;
       Measure(trial);
       if (trial->met) best = trial;
     }
     if (best == nullptr) return Unsupported("rounding misses the errors at every precision");
-    if (static_cast<double>(best->bytes) > kUnlikely * static_cast<double>(most_bytes)) return TooLarge(best->bytes);
+    if (static_cast<double>(best->family.size()) > kUnlikely * static_cast<double>(most_bytes)) return TooLarge(best->family.size());
     if (!meter_.status().ok()) return Shrunk(std::move(*best));
     LACERTA_ASSIGN_OR_RETURN(best, Coarsened(best));
     LACERTA_ASSIGN_OR_RETURN(Trial descended, Descended(*best));
@@ -71,8 +70,8 @@ class FamilyRounder {
     Trial* smallest = nullptr;
     for (const RoundingLevels& levels : outlook_.Candidates()) {
       LACERTA_ASSIGN_OR_RETURN(Trial* trial, TrialAt(levels));
-      if (smallest == nullptr || trial->bytes < smallest->bytes) smallest = trial;
-      if (static_cast<double>(smallest->bytes) > kFar * static_cast<double>(most_bytes)) break;
+      if (smallest == nullptr || trial->family.size() < smallest->family.size()) smallest = trial;
+      if (static_cast<double>(smallest->family.size()) > kFar * static_cast<double>(most_bytes)) break;
     }
     return smallest;
   }
@@ -101,11 +100,11 @@ class FamilyRounder {
         while (levels.has_value() && HasMissed(*levels)) levels = Coarser(best->levels, k, strides[k] = SmallerStride(k, strides[k]));
         if (!levels.has_value() || !outlook_.MayMeet(*levels, best->levels, best->errors)) continue;
         LACERTA_ASSIGN_OR_RETURN(Trial* trial, TrialAt(*levels));
-        if (smallest != nullptr && trial->bytes >= smallest->bytes) continue;
+        if (smallest != nullptr && trial->family.size() >= smallest->family.size()) continue;
         smallest = trial;
         changed = k;
       }
-      if (smallest == nullptr || static_cast<double>(smallest->bytes) > (1.0 - kWorthwhile) * static_cast<double>(best->bytes)) break;
+      if (smallest == nullptr || static_cast<double>(smallest->family.size()) > (1.0 - kWorthwhile) * static_cast<double>(best->family.size())) break;
       Measure(smallest);
       if (smallest->met) {
         best = smallest;
@@ -141,8 +140,7 @@ class FamilyRounder {
         if (descents[a].has_value()) SetValues(a, *descents[a], positions, &trial);
       }
       LACERTA_RETURN_IF_ERROR(coder_.Code(&trial.family));
-      trial.bytes = trial.family.size();
-      if (static_cast<double>(trial.bytes) > (1.0 - kWorthwhile) * static_cast<double>(best.bytes)) break;
+      if (static_cast<double>(trial.family.size()) > (1.0 - kWorthwhile) * static_cast<double>(best.family.size())) break;
       Measure(&trial);
       if (trial.met) return trial;
       if (trial.errors.attributes.empty()) break;  // not measured: something else is against it
@@ -162,7 +160,7 @@ class FamilyRounder {
     std::vector<DescendedValues> descents =
         DescentsWithin(primitives_, positions.moved, attributes_[a], wanted, best.levels.attributes[a], most_error,
                        [&](const std::vector<AccessorData>& values) { return forecast_.Rounded(a, wanted, values); });
-    uint64_t least = best.bytes;
+    uint64_t least = best.family.size();
     std::optional<DescendedValues> smallest;
     for (DescendedValues& descent : descents) {
       Trial trial = best;
@@ -212,14 +210,13 @@ class FamilyRounder {
     trial.family = coder_.RoundedAt(levels);
     for (size_t a = 0; a < attributes_.size(); ++a) trial.rounded.push_back(forecast_.Rounded(a, levels.attributes[a]));
     LACERTA_RETURN_IF_ERROR(coder_.Code(&trial.family));
-    trial.bytes = trial.family.size();
     return trial;
   }
 
   // The same values in fewer bytes. Those in another order are measured at other samples, and have to meet the targets there as well.
   StatusOr<RoundedFamily> Shrunk(Trial trial) {
     constexpr double kWorthwhile = 0.003;  // of the bytes, for a measure
-    LACERTA_RETURN_IF_ERROR(coder_.CodeAnew(&trial.family));
+    LACERTA_RETURN_IF_ERROR(coder_.Code(&trial.family, DracoSearch::kPredictions));
     Trial other = trial;
     LACERTA_RETURN_IF_ERROR(coder_.CodeInOtherOrder(&other.family));
     if (static_cast<double>(other.family.size()) > (1.0 - kWorthwhile) * static_cast<double>(trial.family.size())) return std::move(trial.family);

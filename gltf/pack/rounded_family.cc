@@ -57,14 +57,8 @@ void FamilyCoder::SetValues(size_t a, const DescendedValues& descent, const Roun
   for (size_t p = 0; p < descent.values.size(); ++p) SetPart(attributes_[a].parts[p], descent.values[p], family);
 }
 
-Status FamilyCoder::Code(RoundedFamily* family) const {
-  const auto code = [&](size_t m) { return EncodeDracoPrimitive(*primitives_[m], family->precisions[m]); };
-  LACERTA_ASSIGN_OR_RETURN(family->members, OfEachMember<DracoEncoded>(code));
-  return Status();
-}
-
-Status FamilyCoder::CodeAnew(RoundedFamily* family) const {
-  const auto code = [&](size_t m) { return EncodeDracoPrimitive(*primitives_[m], family->precisions[m], DracoSearch::kPredictions); };
+Status FamilyCoder::Code(RoundedFamily* family, DracoSearch search) const {
+  const auto code = [&](size_t m) { return EncodeDracoPrimitive(*primitives_[m], family->precisions[m], search); };
   LACERTA_ASSIGN_OR_RETURN(family->members, OfEachMember<DracoEncoded>(code));
   return Status();
 }

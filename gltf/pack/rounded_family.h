@@ -41,9 +41,8 @@ class FamilyCoder {
   // Puts other values of an attribute in their place. positions: those of the family.
   void SetValues(size_t a, const DescendedValues& descent, const RoundedPositions& positions, RoundedFamily* family);
 
-  Status Code(RoundedFamily* family) const;
-  // The same values in fewer bytes, and those in another order.
-  Status CodeAnew(RoundedFamily* family) const;
+  Status Code(RoundedFamily* family, DracoSearch search = DracoSearch::kConnectivity) const;
+  // What has been coded, in an order of fewer bytes.
   Status CodeInOtherOrder(RoundedFamily* family) const;
   // What it would take in the codings that its members have.
   StatusOr<uint64_t> BytesAsCoded(const RoundedFamily& family) const;

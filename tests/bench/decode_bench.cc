@@ -136,7 +136,7 @@ void DecodeMeshopt(benchmark::State& state, const std::string& name, const Mesho
     const TriangleMesh mesh = Must(DecodeByMeshopt(coded), name);
     return Size{mesh.positions.size(), mesh.triangles.size()};
   });
-  state.counters["bytes"] = static_cast<double>(coded.vertices.size() + coded.indices.size());
+  state.counters["bytes"] = static_cast<double>(coded.size());
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(size.triangles));
 }
 #endif

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "draco/mesh_conversion.h"
+#include "geometry/bounding_box.h"
 
 namespace lacerta {
 
@@ -51,11 +52,7 @@ MeshoptStreams EncodeByMeshopt(TriangleMesh mesh, int bits) {
   uint32_t* const indices = mesh.triangles[0].data();
   meshopt_optimizeVertexCache(indices, indices, num_indices, coded.num_vertices);
   meshopt_optimizeVertexFetch(mesh.positions.data(), indices, num_indices, mesh.positions.data(), coded.num_vertices, sizeof(Vec3f));
-  Vec3f low = mesh.positions[0], high = low;
-  for (const Vec3f& p : mesh.positions) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
+  const auto [low, high] = BoundsOf(mesh.positions);
   const Vec3f extent = high - low;
   coded.corner = low;
   coded.step = std::max({extent.x, extent.y, extent.z}) / static_cast<float>((1 << bits) - 1);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "decoder/byte_cursor.h"
 #include "encoder/byte_writer.h"
 #include "fuzz/structured_input.h"
 
@@ -134,48 +135,41 @@ class Mutator {
   const MutateBytes& mutate_;
 };
 
-uint32_t WordAt(Span<const uint8_t> bytes, size_t offset) {
-  uint32_t word = 0;
-  for (size_t i = 0; i < 4; ++i) word |= uint32_t{bytes[offset + i]} << 8 * i;
-  return word;
-}
-
-void PutWord(size_t word, Bytes* bytes) { PutWord32(static_cast<uint32_t>(word), bytes); }
-
 // A GLB of JSON and at most one chunk of data, which may be empty.
 struct Glb {
   std::string json;
   Bytes data;
 
-  static constexpr size_t kHeaderSize = 12, kChunkHeaderSize = 8;
+  static constexpr uint32_t kHeaderSize = 12, kChunkHeaderSize = 8;
   static constexpr uint32_t kMagic = 0x46546c67, kJson = 0x4e4f534a, kBinary = 0x004e4942;
 
   static std::optional<Glb> Parse(Span<const uint8_t> input) {
-    if (input.size() < kHeaderSize + kChunkHeaderSize || WordAt(input, 0) != kMagic || WordAt(input, 16) != kJson) return std::nullopt;
-    const size_t length = WordAt(input, kHeaderSize);
-    Span<const uint8_t> rest = input.Subspan(kHeaderSize + kChunkHeaderSize);
-    if (length > rest.size()) return std::nullopt;
-    Glb glb{std::string(rest.begin(), rest.begin() + length), {}};
-    rest = rest.Subspan(length);
-    if (rest.size() < kChunkHeaderSize || WordAt(rest, 4) != kBinary) return glb;
-    rest = rest.Subspan(kChunkHeaderSize);
-    glb.data.assign(rest.begin(), rest.end());
+    ByteCursor cursor(input);
+    if (cursor.Word32() != kMagic) return std::nullopt;
+    cursor.Take(8);  // version and length
+    const uint32_t length = cursor.Word32();
+    if (cursor.Word32() != kJson) return std::nullopt;
+    const Span<const uint8_t> json = cursor.Take(length);
+    if (cursor.at_end()) return std::nullopt;
+    Glb glb{std::string(json.begin(), json.end()), {}};
+    cursor.Take(4);  // length of the data, which are the rest
+    if (cursor.Word32() == kBinary) glb.data.assign(cursor.Rest().begin(), cursor.Rest().end());
     return glb;
   }
 
   Bytes Join() const {
-    const auto padded = [](size_t size) { return (size + 3) / 4 * 4; };
+    const auto padded = [](size_t size) { return static_cast<uint32_t>((size + 3) / 4 * 4); };
     Bytes bytes;
-    PutWord(kMagic, &bytes);
-    PutWord(2, &bytes);
-    PutWord(kHeaderSize + kChunkHeaderSize + padded(json.size()) + (data.empty() ? 0 : kChunkHeaderSize + padded(data.size())), &bytes);
-    PutWord(padded(json.size()), &bytes);
-    PutWord(kJson, &bytes);
+    PutWord32(kMagic, &bytes);
+    PutWord32(2, &bytes);
+    PutWord32(kHeaderSize + kChunkHeaderSize + padded(json.size()) + (data.empty() ? 0 : kChunkHeaderSize + padded(data.size())), &bytes);
+    PutWord32(padded(json.size()), &bytes);
+    PutWord32(kJson, &bytes);
     bytes.insert(bytes.end(), json.begin(), json.end());
     bytes.resize(padded(bytes.size()), ' ');
     if (!data.empty()) {
-      PutWord(padded(data.size()), &bytes);
-      PutWord(kBinary, &bytes);
+      PutWord32(padded(data.size()), &bytes);
+      PutWord32(kBinary, &bytes);
       bytes.insert(bytes.end(), data.begin(), data.end());
       bytes.resize(padded(bytes.size()));
     }

@@ -7,6 +7,7 @@
 
 #include "common/crc16.h"
 #include "common/stream_layout.h"
+#include "decoder/byte_cursor.h"
 #include "decoder/stream_reader.h"
 #include "encoder/byte_writer.h"
 #include "lacerta/decoder.h"
@@ -28,34 +29,37 @@ void SplitCompactBase(StructuredInput* input) {
   const auto head = std::search(before.begin(), before.end(), kCompactHead.begin(), kCompactHead.end());
   if (head == before.end()) return;
   const auto length_at = head + kCompactHead.size();
-  uint64_t length = 0;
-  auto base = length_at;
-  for (int shift = 0; base != before.end() && shift < 35; shift += 7) {
-    length |= uint64_t{*base & 0x7fU} << shift;
-    if ((*base++ & 0x80) == 0) break;
-  }
-  if (length != static_cast<uint64_t>(before.end() - base)) return;
+  ByteCursor cursor(Span<const uint8_t>(before).Subspan(static_cast<size_t>(length_at - before.begin())));
+  if (cursor.Varint() != cursor.Rest().size()) return;
   input->has_compact_base = true;
-  input->compact_base.assign(base, before.end());
+  input->compact_base = Copied(cursor.Rest());
   before.erase(length_at, before.end());
 }
 
+// Levels of the segments of a stream without layers, in order.
+std::vector<int> LevelsWithSegments(const RefinementHeader* header) {
+  std::vector<int> levels;
+  for (int i = 0; i < kMaxLevels; ++i) {
+    const auto level = static_cast<size_t>(i);
+    if (header == nullptr || (level < header->steps.size() && !header->IsSilent(level))) levels.push_back(i + 1);
+  }
+  return levels;
+}
+
 void SplitSegments(const RefinementHeader& header, Span<const uint8_t> rest, StructuredInput* input) {
-  for (size_t i = 0; header.has_layers || i < header.steps.size(); ++i) {
-    if (!header.has_layers && header.IsSilent(i)) continue;
-    size_t size = 0;
-    if (header.has_layers) {
-      const auto read = ReadLayerSegment(rest);
-      if (!read.ok() || !read.value()) break;
-      input->segments.push_back({rest[0], Copied(read.value()->payload)});
-      size = read.value()->size;
-    } else {
-      const auto read = ReadRefinementSegment(rest, static_cast<int>(i) + 1);
-      if (!read.ok() || !read.value()) break;
-      input->segments.push_back({static_cast<uint8_t>(i + 1), Copied(read.value()->payload)});
-      size = read.value()->size;
+  const auto take = [&](uint8_t what, const auto& read) {
+    if (!read.ok() || !read.value()) return false;
+    input->segments.push_back({what, Copied(read.value()->payload)});
+    rest = rest.Subspan(read.value()->size);
+    return true;
+  };
+  if (header.has_layers) {
+    while (!rest.empty() && take(rest[0], ReadLayerSegment(rest))) {
     }
-    rest = rest.Subspan(size);
+  } else {
+    const std::vector<int> levels = LevelsWithSegments(&header);
+    for (size_t i = 0; i < levels.size() && take(static_cast<uint8_t>(levels[i]), ReadRefinementSegment(rest, levels[i])); ++i) {
+    }
   }
   input->after = Copied(rest);
 }
@@ -69,16 +73,6 @@ void SetBaseChecksum(Span<const uint8_t> compact_base, Bytes* header) {
   const uint16_t checksum = BaseChecksum(base.value().mesh);
   (*header)[offset] = static_cast<uint8_t>(checksum);
   (*header)[offset + 1] = static_cast<uint8_t>(checksum >> 8);
-}
-
-// Levels of the segments of a stream without layers, in order.
-std::vector<int> LevelsWithSegments(const RefinementHeader* header) {
-  std::vector<int> levels;
-  for (int i = 0; i < kMaxLevels; ++i) {
-    const auto level = static_cast<size_t>(i);
-    if (header == nullptr || (level < header->steps.size() && !header->IsSilent(level))) levels.push_back(i + 1);
-  }
-  return levels;
 }
 
 }  // namespace

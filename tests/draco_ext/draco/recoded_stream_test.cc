@@ -43,7 +43,9 @@ Bytes EncodeBy(const Way& way, const draco::Mesh& mesh) {
   draco::ExpertEncoder encoder(mesh);
   encoder.SetSpeedOptions(way.speed, way.speed);
   encoder.SetEncodingMethod(way.method);
-  SetEdgebreaker(way.edgebreaker, &encoder);
+  if (way.method == draco::MESH_EDGEBREAKER_ENCODING) {
+    EXPECT_TRUE(SetEdgebreaker(mesh, way.edgebreaker, &encoder).ok());
+  }
   for (int i = 0; i < mesh.num_attributes(); ++i) {
     if (mesh.attribute(i)->attribute_type() != draco::GeometryAttribute::GENERIC) encoder.SetAttributeQuantization(i, 11);
   }

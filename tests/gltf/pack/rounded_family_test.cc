@@ -80,7 +80,7 @@ TEST(FamilyCoder, ValuesTakeTheirPlaceAndAnotherOrderKeepsThem) {
   EXPECT_LT(family.size(), before * 3 / 4);
   EXPECT_EQ(family.reports[0][1].bits, texture.LatticeAt(texture.parts[0], kCoarse).bits);
   RoundedFamily anew = family;
-  ASSERT_TRUE(c.coder.CodeAnew(&anew).ok());
+  ASSERT_TRUE(c.coder.Code(&anew, DracoSearch::kPredictions).ok());
   EXPECT_LE(anew.size(), family.size());
   RoundedFamily other = anew;
   ASSERT_TRUE(c.coder.CodeInOtherOrder(&other).ok());
